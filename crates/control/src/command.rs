@@ -1,4 +1,4 @@
-//! Input and output of a controller.
+//! Input and output of a controller, and its report on itself.
 //!
 //! The command of a feed period is the path, run at `rate` times the planned feed, plus an offset
 //! that moves to `offset_mm`:
@@ -89,6 +89,54 @@ impl<const N: usize> Command<N> {
             add_scaled(sub(self.offset_mm, from_mm), 1.0, self.bend_mm),
         )
     }
+}
+
+/// Report of a controller on itself after a decision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfReport<const N: usize> {
+    /// Distance between the last prediction and the measurement, mm; 0 without a prediction.
+    pub missed_mm: f64,
+    /// Verdict on the model with which it predicts.
+    pub model: Verdict,
+    /// Displacement of the tool by the offset, mm, as that model predicts it; `None` without one.
+    pub moved_mm: Option<[f64; N]>,
+    /// True for each axis that follows a model that was learned in motion.
+    pub learned: [bool; N],
+    /// True if the controller reduces the contour error. A controller that excites the machine to
+    /// identify it does not, and is not disengaged for a larger error.
+    pub corrects: bool,
+    /// True if the offset acts in the servo period of its decision, not in the next one. Such a
+    /// controller decides in every servo period, and within it.
+    pub acts_at_once: bool,
+}
+
+impl<const N: usize> SelfReport<N> {
+    /// Report of a controller that corrects without a model.
+    pub const CORRECTS: Self = Self {
+        missed_mm: 0.0,
+        model: Verdict::Sound,
+        moved_mm: None,
+        learned: [false; N],
+        corrects: true,
+        acts_at_once: false,
+    };
+}
+
+/// Verdict of a test, with its evidence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// The test found nothing.
+    Sound,
+    /// The evidence is not sufficient yet.
+    Suspect {
+        /// Error, and the limit that it approached or exceeded.
+        evidence: FaultEvidence,
+    },
+    /// The evidence is sufficient.
+    Wrong {
+        /// Error, and the limit that it exceeded; `None` where no error was compared.
+        evidence: Option<FaultEvidence>,
+    },
 }
 
 /// Measured error that caused a fault, and the limit that it exceeded, mm.

@@ -8,7 +8,6 @@ pub(crate) mod row;
 pub(crate) mod uncorrected;
 pub(crate) mod feedforward;
 pub(crate) mod lqg_identified;
-mod trial;
 pub(crate) mod inverting;
 pub(crate) mod magnitude_only;
 pub(crate) mod two_dimensional;
@@ -16,7 +15,7 @@ pub(crate) mod two_dimensional;
 use core::ops::{Deref, DerefMut};
 
 use crate::axis::knowledge::AxisKnowledge;
-use crate::command::{Command, FaultEvidence, Measured};
+use crate::command::{Command, Measured, SelfReport};
 use crate::window::Window;
 use feedforward::Feedforward;
 use lqg_identified::LqgIdentified;
@@ -79,38 +78,14 @@ pub trait Controller<const N: usize> {
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let _ = (window, measured);
     }
-    /// Returns the distance between the last prediction and the measurement, mm; 0 without a
-    /// prediction. `supervisor` reads it after each decision.
-    fn prediction_error_mm(&self) -> f64 {
-        0.0
-    }
-    /// Returns why [`Self::prediction_error_mm`] is infinite, where that rests on a comparison.
-    fn doubt(&self) -> Option<FaultEvidence> {
-        None
+    /// Returns what the controller reports on itself; called after each decision.
+    fn report(&self) -> SelfReport<N> {
+        SelfReport::CORRECTS
     }
     /// Returns the axes as the controller knows them now, if it uses such knowledge. A controller
     /// that learns returns other axes than the ones of its construction.
     fn known(&self) -> Option<[AxisKnowledge; N]> {
         None
-    }
-    /// Returns for each axis whether the controller follows a model that it learned in motion.
-    fn learned(&self) -> [bool; N] {
-        [false; N]
-    }
-    /// Returns the displacement of the tool by the offset, mm, as the controller's model predicts
-    /// it. `None` without such a model.
-    fn moved_mm(&self) -> Option<[f64; N]> {
-        None
-    }
-    /// Returns true if the controller reduces the contour error. A controller that excites the
-    /// machine to identify it returns false, and is not disengaged for a larger error.
-    fn corrects(&self) -> bool {
-        true
-    }
-    /// Returns true if the offset acts in the servo period of its decision, not in the next one.
-    /// Such a controller decides in every servo period, and within it.
-    fn acts_at_once(&self) -> bool {
-        false
     }
     /// Decides the command of the next feed period.
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N>;

@@ -44,10 +44,10 @@
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
-//! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
+//! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`], [`SelfReport`] |
 //! | Making one | [`AnyController`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
-//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
+//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`TrainedModel`], [`ModelBlock`] |
 //!
@@ -104,7 +104,7 @@ pub use axis::mechanics::{MechanicsModel, MechanicsState};
 pub use axis::statistics::AxisStatistics;
 pub use axis::transmission::{TableState, TransmissionModel, TransmissionParameters};
 pub use axis::{AxisModel, AxisState, Parameters, Periods, friction_signs};
-pub use command::{Command, FaultEvidence, Measured};
+pub use command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{
     ACCELERATION_GAIN, FRICTION_GAIN, Feedforward, MAX_PREVIEW, VELOCITY_GAIN, preview,

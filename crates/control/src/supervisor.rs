@@ -2,60 +2,62 @@
 //! thread.
 //!
 //! It holds each command within [`Bounds`], and engages a controller only while the correction
-//! brings the tool nearer to the path:
+//! brings the tool nearer to the path. All judges are in this folder, but for the one that needs no
+//! motion: whether a command can follow a drive (`axis/knowledge.rs`). A controller that predicts
+//! keeps the state of the judges of its model, and reports their verdict ([`SelfReport`]).
 //!
-//! | Observation | Test | Action |
+//! | File | Question | If not |
 //! |---|---|---|
-//! | the position is lost | it is NaN, moves faster than the machine can, or stands still while the command moves | disengages at once |
-//! | the command is NaN | | disengages at once |
-//! | on a machine for the first time | in motion without a correction, the model predicts half of the error to correct | does not engage before |
-//! | the model of the controller is wrong | free runs of the model miss more than the error to correct, twice in a row or once by twice as much | disengages at once |
-//! | predictions are wrong | four in a row miss by a fifth of the largest deviation | disengages at once |
-//! | harm | the error is beyond 1.5 times the error without the correction, plus 5 um (mean square over 0.25 s) or 30 um (a single error) | disengages at once |
-//! | [`Bounds::engaged_mm_s2`] keeps the offset from the requested one | | commands a smaller part of it |
-//! | servo periods deviate from the model | innovations, over 5 ms | the controller requests less |
-//! | the command was held to a bound | | the controller requests less |
-//! | none of these, for a while | 0.1 s of motion, and twice as long out as the last time | engages again, within 40 ms or more |
+//! | `supervisor/feedback.rs` | can the measured position be true? | disengages at once |
+//! | `supervisor/outliers.rs` | can an innovation be motion of the axis? | the filter uses the part that can |
+//! | `supervisor/whiteness.rs` | is the noise of the measurement as stated? | the filter takes another noise |
+//! | `supervisor/load.rs` | can the load that a filter finds be real? | disengages at once |
+//! | `supervisor/one_step.rs` | does the axis move within a servo period as its model expects? | the controller requests less |
+//! | `supervisor/proof.rs` | may a model be used again after it was wrong? | stays disengaged |
+//! | `supervisor/validity.rs` | does the model predict what the axis does? | disengages at once |
+//! | `supervisor/first_use.rs` | does the model belong to this machine? | does not engage before |
+//! | `supervisor/model_choice.rs` | does the nominal model explain an axis as well as the learned one? | the axis follows the learned one |
+//! | `supervisor/predictions.rs` | do the controller's predictions come true? | disengages after four |
+//! | `supervisor/benefit.rs` | is the tool as near to the path as without the correction? | disengages at once |
+//! | `supervisor/trial.rs` | does a correction without a model of the axes help? | commands a smaller share |
+//! | `supervisor/fade.rs` | how does an offset return to the path? | |
+//! | `supervisor/bounds.rs` | is a command permitted? | it is held to the bound |
+//! | `supervisor/dose.rs` | does an offset fit into [`Bounds::engaged_mm_s2`]? | commands a smaller part of it |
+//! | `supervisor/engagement.rs` | is the correction engaged? | waits for 0.1 s of good motion, longer after each fault |
+//!
+//! A command that is not a number disengages at once.
 //!
 //! A controller disengages by a fade within [`Bounds::fade_mm_s2`]: the part of the offset that is
 //! commanded falls, or, where the offset is no longer known, the last offset returns to the path. A
 //! disengaged controller continues to learn.
 //!
 //! A wrong prediction of a model counts only beyond four standard deviations of noise, and twice; a
-//! learned model replaces a correct one in one of a thousand trials
-//! (`controller/lqg_identified/learning.rs`).
+//! learned model replaces a correct one in one of a thousand trials (`supervisor/model_choice.rs`).
 //!
 //! Bounds of the harm, for a controller that does any harm within its bounds and knows the effect
 //! of its offset, on a machine with a lag of 20 ms: every error is at most 1.5 times the largest
 //! without it, plus 30 um and half the largest deviation; it exceeds the first two terms for at
 //! most 0.15 s; and the mean square is at most 1.75 times the mean square without it, plus (5
 //! um)^2. `tests/property_supervisor.rs` attacks it.
-//!
-//! | File | Content |
-//! |---|---|
-//! | `supervisor/feedback.rs` | plausibility of the measured position |
-//! | `supervisor/first_use.rs` | test of a model before its first use |
-//! | `supervisor/one_step.rs` | comparison of a servo period with the model |
-//! | `supervisor/proof.rs` | test of a model that was wrong |
-//! | `supervisor/validity.rs` | validity of a model for engagement |
-//! | `supervisor/benefit.rs` | the contour error with and without the correction |
-//! | `supervisor/bounds.rs` | bounds of every command |
-//! | `supervisor/fade.rs` | motion of the offset back to the path |
-//! | `supervisor/dose.rs` | part of an offset that is commanded |
-//! | `supervisor/engagement.rs` | the states: shadow, engaged, fading |
 
 pub(crate) mod feedback;
-pub(crate) mod first_use;
+pub(crate) mod outliers;
+pub(crate) mod whiteness;
+pub(crate) mod load;
 pub(crate) mod one_step;
 mod proof;
 pub(crate) mod validity;
+pub(crate) mod first_use;
+pub(crate) mod model_choice;
+mod predictions;
 mod benefit;
-mod bounds;
+pub(crate) mod trial;
 mod fade;
+mod bounds;
 mod dose;
 pub(crate) mod engagement;
 
-use crate::command::{Command, FaultEvidence, Measured};
+use crate::command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
 use crate::vector::{add_scaled, sub};
 use crate::window::Window;
 use benefit::Benefit;
@@ -64,39 +66,19 @@ use dose::Dose;
 pub use engagement::{Cause, FORGIVEN_S, Fade, State};
 use engagement::{DecisionInputs, Engagement};
 pub use fade::fade_acceleration;
+use predictions::Predictions;
 
-/// Wrong predictions in a row that disengage the controller. A single one is a shock, which no
-/// model predicts.
-const WRONG_DECISIONS: u32 = 4;
-/// Share of the largest deviation beyond which a prediction is wrong.
-const WRONG_SHARE: f64 = 0.2;
-/// Error up to which a prediction is never wrong, mm, however small the largest deviation is.
-const MIN_WRONG_MM: f64 = 0.02;
-/// Share of the error of a wrong prediction below which a prediction is good.
-const GOOD_SHARE: f64 = 0.5;
-/// Report of a controller on itself after a decision.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SelfReport<const N: usize> {
-    /// Error of its last prediction, mm; infinite where its model is wrong. `doubt` is the evidence
-    /// for that.
-    pub(crate) prediction_error_mm: f64,
-    pub(crate) doubt: Option<FaultEvidence>,
-    /// Displacement of the tool by its offset, mm, where it knows.
-    pub(crate) moved_mm: Option<[f64; N]>,
-    /// True if it reduces the contour error.
-    pub(crate) corrects: bool,
-    /// True if its offset acts in the servo period of the decision.
-    pub(crate) acts_at_once: bool,
-    /// True for each axis that it corrects with a learned model.
-    pub(crate) learned: [bool; N],
-}
+/// Standard deviations beyond which an error is not noise.
+pub(crate) const DEVIATIONS: f64 = 4.0;
+/// Square of an error that is no evidence against a model, mm^2 (2 um).
+const NO_ERROR_MM2: f64 = 4e-6;
 
 /// The supervisor and its state between decisions.
 #[derive(Debug, Clone)]
 pub(crate) struct Supervisor<const N: usize> {
     bounds: Bounds,
     rate: f64,
-    wrong: u32,
+    predictions: Predictions,
     benefit: Benefit<N>,
     engagement: Engagement,
     /// Commanded part of an offset that acts at once.
@@ -112,7 +94,7 @@ impl<const N: usize> Supervisor<N> {
         Self {
             bounds,
             rate: 1.0,
-            wrong: 0,
+            predictions: Predictions::NONE,
             benefit: Benefit::NONE,
             engagement: Engagement::START,
             dose: Dose::ALL,
@@ -164,11 +146,11 @@ impl<const N: usize> Supervisor<N> {
         window: &Window<'_, N>,
         measured: &Measured<N>,
         wanted: Option<Command<N>>,
-        told: &SelfReport<N>,
+        report: &SelfReport<N>,
     ) -> Command<N> {
-        let bad = match &wanted {
-            Some(wanted) => self.judge(window, measured, wanted, told),
-            None => Some((Cause::LostFeedback, None)),
+        let (bad, good) = match &wanted {
+            Some(wanted) => self.judge(window, measured, wanted, report),
+            None => (Some((Cause::LostFeedback, None)), false),
         };
         let is_known = !matches!(bad, Some((Cause::NotANumber | Cause::LostFeedback, _)));
         let wanted = wanted.unwrap_or(Command::AS_PLANNED);
@@ -176,13 +158,13 @@ impl<const N: usize> Supervisor<N> {
         let state = self.engagement.go_on(&DecisionInputs {
             allowed: self.allowed,
             bad,
-            good: told.prediction_error_mm < GOOD_SHARE * self.wrong_mm(),
-            over: fade::is_over(window.offset_mm, window.offset_mm_s),
+            good,
+            over: before == State::Fading && fade::is_over(window.offset_mm, window.offset_mm_s),
             moves: window.now().feed_mm_s > 0.0,
             period_s: window.feed_period_s,
         });
         let asked = match state {
-            _ if told.acts_at_once => {
+            _ if report.acts_at_once => {
                 if state != before && state != State::Shadow {
                     self.dose.turn(
                         if is_known {
@@ -193,7 +175,7 @@ impl<const N: usize> Supervisor<N> {
                         self.bounds.fade_mm_s2,
                     );
                 }
-                self.dose.learn(told.learned);
+                self.dose.learn(report.learned);
                 self.at_once(window, &wanted, state, is_known)
             }
             State::Engaged => wanted,
@@ -202,7 +184,7 @@ impl<const N: usize> Supervisor<N> {
         };
         let command = self
             .bounds
-            .hold(window, asked, self.rate, told.acts_at_once);
+            .hold(window, asked, self.rate, report.acts_at_once);
         self.held = state == State::Engaged && (command != asked || self.dose.is_reduced());
         self.rate = command.rate;
         command
@@ -244,50 +226,39 @@ impl<const N: usize> Supervisor<N> {
         }
     }
 
-    /// Returns the reason to disengage the controller and its evidence.
+    /// Returns the reason to disengage the controller with its evidence, and true if the
+    /// predictions are good.
     fn judge(
         &mut self,
         window: &Window<'_, N>,
         measured: &Measured<N>,
         wanted: &Command<N>,
-        told: &SelfReport<N>,
-    ) -> Option<(Cause, Option<FaultEvidence>)> {
+        report: &SelfReport<N>,
+    ) -> (Option<(Cause, Option<FaultEvidence>)>, bool) {
         let sum = wanted.rate + wanted.offset_mm.iter().chain(&wanted.bend_mm).sum::<f64>();
-        self.wrong = match told.prediction_error_mm {
-            f64::INFINITY => WRONG_DECISIONS,
-            wrong_mm if wrong_mm > self.wrong_mm() => self.wrong + 1,
-            _ => 0,
-        };
+        let predictions = self.predictions.judge(report, self.bounds.deviation_mm);
         // Where the predictions are invalid, so is the reported effect of the offset.
-        let harm = if told.prediction_error_mm < f64::INFINITY {
+        let is_valid =
+            !matches!(report.model, Verdict::Wrong { .. }) && report.missed_mm.is_finite();
+        let harm = if is_valid {
             self.benefit.harm(
                 window,
                 measured.position_mm,
                 &measured.contour,
-                told.moved_mm,
+                report.moved_mm,
             )
         } else {
             None
         };
-        if !sum.is_finite() {
+        let bad = if !sum.is_finite() {
             Some((Cause::NotANumber, None))
-        } else if self.wrong >= WRONG_DECISIONS {
-            let missed = FaultEvidence {
-                found_mm: told.prediction_error_mm,
-                limit_mm: self.wrong_mm(),
-            };
-            // An infinite error is the controller's own judgment: it has no measured value.
-            let measured = Some(missed).filter(|missed| missed.found_mm < f64::INFINITY);
-            Some((Cause::WrongPredictions, told.doubt.or(measured)))
+        } else if let Verdict::Wrong { evidence } = predictions {
+            Some((Cause::WrongPredictions, evidence))
         } else {
-            harm.filter(|_| told.corrects)
+            harm.filter(|_| report.corrects)
                 .map(|harm| (Cause::Harmful, Some(harm)))
-        }
-    }
-
-    /// Returns the error beyond which a prediction is wrong, mm.
-    fn wrong_mm(&self) -> f64 {
-        (WRONG_SHARE * self.bounds.deviation_mm).max(MIN_WRONG_MM)
+        };
+        (bad, matches!(predictions, Verdict::Sound))
     }
 
     /// Returns the next step of the way back to the path, at the planned feedrate.

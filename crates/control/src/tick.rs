@@ -8,7 +8,7 @@ use crate::command::{Command, Measured};
 use crate::contour_error::{ContourError, Estimator};
 use crate::controller::{Controller, Schedule};
 use crate::supervisor::feedback::Feedback;
-use crate::supervisor::{Bounds, Fade, SelfReport, State, Supervisor};
+use crate::supervisor::{Bounds, Fade, State, Supervisor};
 use crate::vector::add_scaled;
 use crate::window::{Knot, KnotSource, Preview, Register, Window};
 
@@ -57,6 +57,7 @@ impl PlanTime {
 #[derive(Debug, Clone)]
 pub struct Tick<const N: usize> {
     servo_s: f64,
+    feed_period_s: f64,
     supervisor: Supervisor<N>,
     schedule: Schedule,
     register: Register<N>,
@@ -71,6 +72,10 @@ pub struct Tick<const N: usize> {
     command: Command<N>,
     /// Last requested rate.
     requested_rate: f64,
+    /// Servo periods by which the offset is ahead of the decision: 1 if it acts at once.
+    ahead: u32,
+    /// True for each axis that follows a learned model.
+    learned: [bool; N],
     /// Servo periods since the start of the feed period.
     phase: u32,
     /// The last command, mm.
@@ -81,13 +86,15 @@ impl<const N: usize> Tick<N> {
     /// Creates the state at the start of a program, for a controller with this schedule and a servo
     /// period of `servo_s` seconds.
     pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
+        let schedule = Schedule {
+            servo_periods: schedule.servo_periods.max(1),
+            ..schedule
+        };
         Self {
             servo_s,
+            feed_period_s: f64::from(schedule.servo_periods) * servo_s,
             supervisor: Supervisor::new(bounds),
-            schedule: Schedule {
-                servo_periods: schedule.servo_periods.max(1),
-                ..schedule
-            },
+            schedule,
             register: Register::default(),
             feedback: Feedback::NONE,
             estimator: Estimator::default(),
@@ -98,6 +105,8 @@ impl<const N: usize> Tick<N> {
             offset_from_mm_s: [0.0; N],
             command: Command::AS_PLANNED,
             requested_rate: 1.0,
+            ahead: 0,
+            learned: [false; N],
             phase: 0,
             command_mm: None,
         }
@@ -138,7 +147,7 @@ impl<const N: usize> Tick<N> {
             self.time = self.time.after(f64::from(self.phase) * self.command.rate);
             self.offset_from_mm_s = self
                 .command
-                .offset_mm_s(self.offset_from_mm, self.feed_period_s());
+                .offset_mm_s(self.offset_from_mm, self.feed_period_s);
             self.offset_from_mm = self.command.offset_mm;
             self.phase = 0;
         }
@@ -152,7 +161,7 @@ impl<const N: usize> Tick<N> {
         self.preview.fill(
             reference,
             tau_s,
-            f64::from(self.schedule.preview) * self.feed_period_s(),
+            f64::from(self.schedule.preview) * self.feed_period_s,
         );
         let most_mm_s = self.supervisor.bounds().speed_mm_s;
         let last_mm = self.command_mm.unwrap_or(path.position_mm);
@@ -161,12 +170,7 @@ impl<const N: usize> Tick<N> {
         if decided {
             self.decide(controller, tool_mm);
         }
-        let reached = if controller.acts_at_once() {
-            self.phase + 1
-        } else {
-            self.phase
-        };
-        let part = f64::from(reached) / f64::from(self.schedule.servo_periods);
+        let part = f64::from(self.phase + self.ahead) / f64::from(self.schedule.servo_periods);
         let offset_mm = self.command.offset_after_mm(part, self.offset_from_mm);
         self.phase += 1;
         let command_mm = add_scaled(path.position_mm, 1.0, offset_mm);
@@ -221,6 +225,11 @@ impl<const N: usize> Tick<N> {
         self.supervisor.state()
     }
 
+    /// Returns for each axis whether the controller followed a learned model at the last decision.
+    pub fn learned(&self) -> [bool; N] {
+        self.learned
+    }
+
     /// Returns time and cause of the last disengagement by the supervisor.
     pub fn fade(&self) -> Option<Fade> {
         self.supervisor.fade()
@@ -231,7 +240,7 @@ impl<const N: usize> Tick<N> {
             register: &self.register,
             preview: &self.preview,
             tau_s: self.time.seconds(self.servo_s),
-            feed_period_s: self.feed_period_s(),
+            feed_period_s: self.feed_period_s,
             offset_mm: self.offset_from_mm,
             offset_mm_s: self.offset_from_mm_s,
         };
@@ -251,19 +260,10 @@ impl<const N: usize> Tick<N> {
             self.requested_rate = if is_number { *rate } else { 1.0 };
             *rate = if is_number { 1.0 } else { *rate };
         }
-        let told = SelfReport {
-            prediction_error_mm: controller.prediction_error_mm(),
-            doubt: controller.doubt(),
-            moved_mm: controller.moved_mm(),
-            corrects: controller.corrects(),
-            acts_at_once: controller.acts_at_once(),
-            learned: controller.learned(),
-        };
-        self.command = self.supervisor.decide(&window, &measured, wanted, &told);
-    }
-
-    fn feed_period_s(&self) -> f64 {
-        f64::from(self.schedule.servo_periods) * self.servo_s
+        let report = controller.report();
+        self.ahead = u32::from(report.acts_at_once);
+        self.learned = report.learned;
+        self.command = self.supervisor.decide(&window, &measured, wanted, &report);
     }
 }
 

@@ -2,7 +2,8 @@
 
 use feedwright_control::vector::{norm, sub};
 use feedwright_control::{
-    Bounds, Cause, Command, Controller, Knot, KnotSource, Measured, Schedule, State, Tick, Window,
+    Bounds, Cause, Command, Controller, Knot, KnotSource, Measured, Schedule, SelfReport, State,
+    Tick, Verdict, Window,
 };
 use proptest::prelude::*;
 
@@ -67,8 +68,18 @@ impl<C: Fn(u32) -> Command<2>, M: Fn(u32) -> f64> Controller<2> for Script<C, M>
         assert!(is_place, "a position that was lost is not handed over");
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        (self.prediction_error_mm)(self.decision)
+    fn report(&self) -> SelfReport<2> {
+        let missed_mm = (self.prediction_error_mm)(self.decision);
+        SelfReport {
+            missed_mm,
+            // Infinite: the controller's own test found its model wrong, and compared nothing.
+            model: if missed_mm == f64::INFINITY {
+                Verdict::Wrong { evidence: None }
+            } else {
+                Verdict::Sound
+            },
+            ..SelfReport::CORRECTS
+        }
     }
 
     fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
@@ -370,12 +381,12 @@ impl Controller<2> for Wild {
         self.moved_mm = std::array::from_fn(|i| self.moved_mm[i] + SERVO_S / LAG_S * change[i]);
     }
 
-    fn moved_mm(&self) -> Option<[f64; 2]> {
-        Some(self.moved_mm)
-    }
-
-    fn acts_at_once(&self) -> bool {
-        true
+    fn report(&self) -> SelfReport<2> {
+        SelfReport {
+            moved_mm: Some(self.moved_mm),
+            acts_at_once: true,
+            ..SelfReport::CORRECTS
+        }
     }
 
     fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {

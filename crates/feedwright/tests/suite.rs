@@ -57,7 +57,6 @@ mod conformance_long_programs;
 mod conformance_measured;
 mod conformance_measured_run;
 mod conformance_models;
-mod conformance_names;
 #[cfg(has_page)]
 mod conformance_open;
 #[cfg(not(has_page))]

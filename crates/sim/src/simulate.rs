@@ -364,7 +364,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
                 .ticks
                 .add(watch.clock().saturating_sub(began).as_nanos());
             self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
-            self.note_changes(t_s, setpoint.tau_s, reference, controller);
+            self.note_changes(t_s, setpoint.tau_s, reference);
         }
         if self.ended_s.is_none()
             && let Some(end_s) = reference.end_s()
@@ -378,17 +378,11 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     }
 
     /// Records every change of the correction.
-    fn note_changes(
-        &mut self,
-        t_s: f64,
-        tau_s: f64,
-        reference: &mut Reference<'_>,
-        controller: &dyn Controller<N>,
-    ) {
+    fn note_changes(&mut self, t_s: f64, tau_s: f64, reference: &mut Reference<'_>) {
         let (fade, engaged, learned) = (
             self.tick.fade(),
             self.tick.state() == State::Engaged,
-            controller.learned(),
+            self.tick.learned(),
         );
         if (fade, engaged, learned) == (self.fade, self.engaged, self.learned) {
             return;

@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use feedwright::{CONTROLLERS, Choices, Make, Setup, TWO_DIMENSIONAL};
 use feedwright_control::{
-    AnyController, Bounds, Command, Controller, ControllerRow, FaultEvidence, IdentifiedAxes,
-    IdentifierKind, Knot, KnotSource, Knows, Measured, Schedule, Tick, Window,
+    AnyController, Bounds, Command, Controller, ControllerRow, IdentifiedAxes, IdentifierKind,
+    Knot, KnotSource, Knows, Measured, Schedule, SelfReport, Tick, Window,
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes};
 use feedwright_servo::machine::{live_controller, model_of};
@@ -67,29 +67,11 @@ impl Controller<2> for Both {
         self.live.observe(window, measured);
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        f64::from_bits(self.same(|controller| controller.prediction_error_mm().to_bits()))
-    }
-
-    fn doubt(&self) -> Option<FaultEvidence> {
-        self.same(|controller| controller.doubt())
-    }
-
-    fn learned(&self) -> [bool; 2] {
-        self.same(|controller| controller.learned())
-    }
-
-    fn moved_mm(&self) -> Option<[f64; 2]> {
-        self.same(|controller| controller.moved_mm().map(|mm| mm.map(f64::to_bits)))
-            .map(|bits| bits.map(f64::from_bits))
-    }
-
-    fn corrects(&self) -> bool {
-        self.same(|controller| controller.corrects())
-    }
-
-    fn acts_at_once(&self) -> bool {
-        self.same(|controller| controller.acts_at_once())
+    fn report(&self) -> SelfReport<2> {
+        self.same(|controller| {
+            let report = controller.report();
+            report
+        })
     }
 
     fn command(&mut self, window: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {

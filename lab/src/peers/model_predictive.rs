@@ -20,7 +20,7 @@ use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
     AxisModel, AxisState, Command, CommandQueue, Controller, DriveModel, DriveParameters,
     DriveReference, DriveState, FrictionModel, FrictionParameters, Measured, Parameters, Schedule,
-    Window, friction_signs,
+    SelfReport, Window, friction_signs,
 };
 use feedwright_sim::{Known, KnownAxis};
 
@@ -126,8 +126,11 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         }
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        self.prediction_error_mm
+    fn report(&self) -> SelfReport<N> {
+        SelfReport {
+            missed_mm: self.prediction_error_mm,
+            ..SelfReport::CORRECTS
+        }
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {

@@ -448,7 +448,7 @@ impl<const N: usize> Servo<N> {
             servo_periods,
             preview,
         } = self.controller.schedule();
-        let looks_ahead = if self.controller.acts_at_once() {
+        let looks_ahead = if self.controller.report().acts_at_once {
             1
         } else {
             u64::from(servo_periods) * u64::from(preview)
@@ -470,7 +470,7 @@ impl<const N: usize> Servo<N> {
             }
         }
         let mut schedule = self.controller.schedule();
-        if self.controller.acts_at_once() {
+        if self.controller.report().acts_at_once {
             schedule.preview = ahead;
         }
         self.tick = Tick::new(self.servo_s, schedule, bounds).planned_elsewhere();
@@ -557,7 +557,7 @@ impl<const N: usize> Servo<N> {
         let holds = state == State::Engaged && setpoint.path.feed_mm_s > 0.0;
         self.latch.take_in(
             left,
-            self.controller.learned(),
+            self.tick.learned(),
             if holds { self.servo_s } else { 0.0 },
         );
         let correction_mm = add_scaled(offset_mm, 1.0, self.residual.value_mm());
@@ -585,7 +585,7 @@ impl<const N: usize> Servo<N> {
             fault: cause.map_or(LinkFault::None, LinkFault::Faded),
             left,
             latched: false,
-            learned: self.controller.learned(),
+            learned: self.tick.learned(),
             delay_periods: self.delay,
             holds_feed: false,
             is_settled: false,

@@ -18,13 +18,13 @@
 use core::marker::PhantomData;
 
 use super::row::{Parameter, Values};
-use super::trial::CorrectionTrial;
 use super::{Controller, Schedule};
-use crate::command::{Command, Measured};
+use crate::command::{Command, Measured, SelfReport};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
 use crate::inversion::{self, Gradient, MAX_KNOTS, TimeTerm};
 use crate::model::TrainedModel;
+use crate::supervisor::trial::CorrectionTrial;
 use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
@@ -251,8 +251,11 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         }
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        self.prediction_error_mm
+    fn report(&self) -> SelfReport<N> {
+        SelfReport {
+            missed_mm: self.prediction_error_mm,
+            ..SelfReport::CORRECTS
+        }
     }
 
     /// Inverts from the planned feedrate and turns the result into a rate and a new offset.

@@ -35,8 +35,7 @@
 //! | `lqg_identified/screw.rs` | position of the motor on a compliant ball screw |
 //! | `lqg_identified/approach.rs` | the way back of a tool that is far off, within the available control authority |
 //! | `lqg_identified/feasible.rs` | check of the torque for the reference ahead |
-//! | `lqg_identified/outliers.rs` | implausible measurements |
-//! | `lqg_identified/whiteness.rs` | weight of the measurements in the filter |
+//! | `lqg_identified/gain_table.rs` | gains of the filter by the noise of the measurement |
 //! | `lqg_identified/estimate.rs` | the filter |
 //! | `lqg_identified/learning.rs` | model errors, learned while the axis moves |
 //! | `lqg_identified/regulated_axis.rs` | an axis: filter, regulator and inverse |
@@ -55,8 +54,7 @@ mod command_weight;
 mod screw;
 mod approach;
 mod feasible;
-mod outliers;
-mod whiteness;
+mod gain_table;
 mod estimate;
 mod learning;
 mod regulated_axis;
@@ -65,11 +63,11 @@ use super::feedforward::preview;
 use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
 use super::{Controller, OffsetBounds, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
-use crate::command::{Command, FaultEvidence, Measured};
+use crate::command::{Command, Measured, SelfReport, Verdict};
 use crate::identifier::IdentifierKind;
 use crate::model::Trained;
 use crate::supervisor::first_use::FirstUse;
-use crate::supervisor::one_step::OneStep;
+use crate::supervisor::one_step::{OneStep, RUN_S};
 use crate::supervisor::validity::{Shown, Trusted, Validity};
 use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
@@ -85,9 +83,8 @@ const DIFFERENCES: f64 = 3.0;
 /// Difference from the requested offset up to which an offset counts as followed, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
-/// Time for which a lost position is predicted by a free run of the model, s, and the distance from
-/// the prediction, mm, beyond which everything begins anew when the position returns.
-const FORESEEN_S: f64 = 0.03;
+/// Distance from the prediction, mm, beyond which everything begins anew when a lost position
+/// returns. A free run of the model predicts it for [`RUN_S`].
 const FORESEEN_MM: f64 = 0.05;
 
 /// Linear-quadratic-Gaussian control with preview, by a model of each axis.
@@ -154,7 +151,7 @@ impl<const N: usize> LqgIdentified<N> {
     /// Predicts a servo period without a position.
     fn foresee(&mut self, window: &Window<'_, N>) {
         self.lost_s += window.feed_period_s;
-        if self.lost_s > FORESEEN_S {
+        if self.lost_s > RUN_S {
             self.begin_anew();
             return;
         }
@@ -188,6 +185,28 @@ impl<const N: usize> LqgIdentified<N> {
                 .each_ref()
                 .map(|axis| axis.moved_and_missed_mm()[1]),
         )
+    }
+
+    /// Returns true if a position that comes back after it was lost is not where the models expect
+    /// it.
+    fn is_elsewhere(&self) -> bool {
+        !self.axes.iter().all(AxisLqg::is_possible) || self.missed_mm() > FORESEEN_MM
+    }
+
+    /// Returns the verdict on the models. They are also wrong if no command can follow a drive, or
+    /// if a load cannot be real.
+    fn model(&self) -> Verdict {
+        let of_runs = self
+            .validity
+            .as_ref()
+            .map_or(Verdict::Sound, Validity::verdict);
+        let is_exact = self.validity.is_none();
+        let holds = |axis: &AxisLqg| axis.is_possible() && (is_exact || axis.known().is_followed());
+        if matches!(of_runs, Verdict::Sound) && !self.axes.iter().all(holds) {
+            Verdict::Wrong { evidence: None }
+        } else {
+            of_runs
+        }
     }
 
     /// Takes in the next part of the reference.
@@ -242,10 +261,6 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
         }
     }
 
-    fn acts_at_once(&self) -> bool {
-        true
-    }
-
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::forget);
         self.know_nothing();
@@ -292,7 +307,7 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
         {
             turned |= axis.observe(offset_mm, position_mm, speed_mm_s, [is_alone, is_likely]);
         }
-        if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.missed_mm() > FORESEEN_MM {
+        if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.is_elsewhere() {
             self.begin_anew();
             return;
         }
@@ -346,37 +361,23 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
         }
     }
 
-    /// Returns infinity if the model is wrong, or if no command can follow the drive.
-    fn prediction_error_mm(&self) -> f64 {
-        let is_followed = self.axes.iter().all(|axis| axis.known().is_followed());
-        if self
-            .validity
-            .as_ref()
-            .is_some_and(|validity| validity.is_wrong() || !is_followed)
-        {
-            return f64::INFINITY;
+    fn report(&self) -> SelfReport<N> {
+        SelfReport {
+            missed_mm: self.missed_mm(),
+            model: self.model(),
+            moved_mm: Some(
+                self.axes
+                    .each_ref()
+                    .map(|axis| axis.moved_and_missed_mm()[0]),
+            ),
+            learned: self.axes.each_ref().map(AxisLqg::is_learned),
+            acts_at_once: true,
+            ..SelfReport::CORRECTS
         }
-        self.missed_mm()
-    }
-
-    fn doubt(&self) -> Option<FaultEvidence> {
-        self.validity.as_ref().and_then(Validity::doubt)
     }
 
     fn known(&self) -> Option<[AxisKnowledge; N]> {
         Some(self.axes.each_ref().map(AxisLqg::known))
-    }
-
-    fn learned(&self) -> [bool; N] {
-        self.axes.each_ref().map(AxisLqg::is_learned)
-    }
-
-    fn moved_mm(&self) -> Option<[f64; N]> {
-        Some(
-            self.axes
-                .each_ref()
-                .map(|axis| axis.moved_and_missed_mm()[0]),
-        )
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {

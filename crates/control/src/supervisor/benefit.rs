@@ -1,4 +1,4 @@
-//! Compares the contour error with the error that the tool would have without the correction.
+//! Question: is the tool as near to the path as it would be without the correction?
 //!
 //! ```text
 //! eps: error of the tool p     eps_open: error of p - g     g: displacement of the tool by the offset
@@ -8,6 +8,8 @@
 //! first-order lag, with the time by which the tool lags. Both errors are compared as mean squares
 //! and as largest values over the last [`MEMORY_S`]. The model may be wrong by some percent, and g
 //! with it: harm counts only beyond that margin.
+//!
+//! Evidence: the error with the correction, and the limit from the error without it.
 
 use crate::command::FaultEvidence;
 use crate::contour_error::{ContourError, locate};
@@ -20,9 +22,8 @@ const MEMORY_S: f64 = 0.25;
 /// plus this much, mm^2 (5 um).
 const CERTAIN: f64 = 1.5;
 const MIN_MM2: f64 = 2.5e-5;
-/// Harm in a single error: it is beyond this many times the largest error without the correction,
-/// plus this much, mm.
-const CERTAIN_PEAK: f64 = 1.5;
+/// Harm in a single error: it is beyond as many times the largest error without the correction, plus
+/// this much, mm.
 const MIN_PEAK_MM: f64 = 0.03;
 /// Relative error of g that is tolerated.
 const DOUBT: f64 = 0.1;
@@ -90,10 +91,7 @@ impl<const N: usize> Benefit<N> {
             [MIN_MM2, CERTAIN]
         };
         let allowed_mm2 = least_mm2 + times * self.open_square_mm2;
-        let (error_mm, peak_mm) = (
-            norm(vector_mm),
-            MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm,
-        );
+        let (error_mm, peak_mm) = (norm(vector_mm), MIN_PEAK_MM + CERTAIN * self.open_peak_mm);
         if self.square_mm2 > allowed_mm2 {
             Some(FaultEvidence {
                 found_mm: libm::sqrt(self.square_mm2),

@@ -1,4 +1,4 @@
-//! Bounds of every command, for every controller.
+//! Question: is a command permitted? The bounds hold for every controller.
 //!
 //! | Bound | Quantity | Value |
 //! |---|---|---|
@@ -15,6 +15,8 @@ use crate::contour_error::locate;
 use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, sub};
 use crate::window::Window;
 
+use super::fade;
+
 /// Slowest rate at which a controller may run the plan: a program always ends.
 const SLOWEST: f64 = 0.1;
 /// Fastest rate without another setting: no command leaps.
@@ -22,8 +24,6 @@ const FASTEST: f64 = 3.0;
 /// Time in which the correction may reach its highest speed, s. Feedforward of the exact model
 /// takes as little at a corner; no machine could follow a command that leaps more.
 const TAKE_UP_S: f64 = 0.001;
-/// Braking of an offset: half of this part of the permitted acceleration; 2 is all of it.
-const BRAKES: f64 = 1.2;
 /// Parts of the motion of the offset in a feed period at which its deviation is checked.
 const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
 /// Factor on the highest speed of the offset with which the bound of the deviation may move the
@@ -85,7 +85,7 @@ impl Bounds {
         for (offset_mm, (from_mm, from_mm_s)) in offset_mm.iter_mut().zip(from) {
             let way_mm = *offset_mm - from_mm;
             if (way_mm / period_s - from_mm_s).abs() > most_mm_s {
-                let closing_mm_s = libm::sqrt(BRAKES * self.engaged_mm_s2 * way_mm.abs())
+                let closing_mm_s = libm::sqrt(fade::MARGIN * self.engaged_mm_s2 * way_mm.abs())
                     .min(way_mm.abs() / period_s);
                 let change_mm_s = libm::copysign(closing_mm_s, way_mm) - from_mm_s;
                 *offset_mm =

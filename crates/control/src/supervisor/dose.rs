@@ -1,4 +1,5 @@
-//! Commanded part of an offset that acts at once.
+//! Question: does an offset that acts at once fit into the owner's acceleration? If not, a part of it
+//! is commanded.
 //!
 //! ```text
 //! o = s(p) d c             c is the present request of the controller, s(p) = 3 p^2 - 2 p^3

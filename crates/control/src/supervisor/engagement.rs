@@ -1,4 +1,4 @@
-//! The live state machine: when a correction engages, disengages, and engages again.
+//! Question: is the correction engaged? The state machine takes in the verdicts of all tests.
 //!
 //! ```text
 //! Shadow --good for the wait--> Engaged --bad--> Fading --offset at rest--> Shadow

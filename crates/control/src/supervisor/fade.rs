@@ -1,4 +1,4 @@
-//! The way back to the plan: the offset comes to rest at zero within an acceleration.
+//! Question: how does an offset return to the path? It comes to rest at zero within an acceleration.
 //!
 //! ```text
 //! v(o) = min(o / T, sqrt(c A o))     a = (v - v(o)) / dt, at most A
@@ -13,7 +13,7 @@ use crate::vector::bounded;
 /// transient of its own.
 const TIME_S: f64 = 0.03;
 /// c: 2 uses all of A.
-const MARGIN: f64 = 1.2;
+pub(super) const MARGIN: f64 = 1.2;
 /// Offset and speed below which a fade is over, mm and mm/s.
 const NONE_MM: f64 = 1e-6;
 const NONE_MM_S: f64 = 1e-3;

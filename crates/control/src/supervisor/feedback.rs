@@ -1,4 +1,12 @@
-//! Checks in every servo period whether the measured position is plausible.
+//! Question: can the measured position be true?
+//!
+//! | It is lost | Test, in every servo period |
+//! |---|---|
+//! | not a number | NaN or infinite |
+//! | leaped | it moved farther than twice the highest speed allows |
+//! | frozen | unchanged for [`FROZEN_S`], while the command moved by [`FROZEN_MM`] |
+//!
+//! Evidence: the position and the command alone; no model is used.
 
 use crate::vector::{norm, sub};
 

@@ -1,4 +1,5 @@
-//! Test of a model before its first use on a machine, in motion without a correction.
+//! Question: does the model belong to this machine? It is tested before its first use, in motion
+//! without a correction.
 //!
 //! ```text
 //! m  measured position minus the one of the axes by the model alone, simulated along the same path
@@ -6,6 +7,8 @@
 //!
 //! <m^2> <= <d^2> / 4      after 20 ms of motion, where <d^2> > (2 um)^2 + 20 s^2: it is used
 //! ```
+//!
+//! Evidence: mean squares of m and d.
 //!
 //! A correction removes d, and m remains: with a model that predicts half of d, a correction
 //! removes at least half of it. s^2 is the variance of the position by noise. The test needs motion
@@ -21,13 +24,14 @@
 
 use crate::vector::bounded;
 
+use super::NO_ERROR_MM2;
+
 /// Largest share of d^2 that may remain as m^2.
 const SHARE: f64 = 0.25;
 /// Time of motion after which the test counts, s, and time over which squares are averaged, s.
 const SHOWN_S: f64 = 0.02;
 const MEMORY_S: f64 = 1.0;
-/// Smallest d^2 that counts, mm^2 (2 um), and the part of it in variances of the noise.
-const LEAST_MM2: f64 = 4e-6;
+/// Part of the smallest d^2 that counts, in variances of the noise.
 const BEYOND_NOISE: f64 = 20.0;
 /// Time in which the correction engages, s.
 const IN_S: f64 = 0.065;
@@ -48,7 +52,7 @@ impl FirstUse {
     /// Creates the test before any motion; `noise_mm2` is the variance of the position by noise,
     /// mm^2.
     pub(crate) fn new(noise_mm2: f64) -> Self {
-        let least_mm2 = LEAST_MM2 + BEYOND_NOISE * noise_mm2;
+        let least_mm2 = NO_ERROR_MM2 + BEYOND_NOISE * noise_mm2;
         Self {
             least_mm2,
             moved_s: 0.0,

@@ -1,5 +1,5 @@
-//! Compares each servo period with the model. A wrong model shows at once, long before its error
-//! accumulates.
+//! Question: does the axis move within a servo period as its model expects? A wrong model shows at
+//! once, long before its error accumulates.
 //!
 //! ```text
 //! n  innovation: measured minus expected one servo period before
@@ -8,6 +8,8 @@
 //!
 //! <n^2> > (0.1 um)^2 + 16 S + (1.5 p)^2     over the last 5 ms: deviation from the model
 //! ```
+//!
+//! Evidence: innovations of the filter. While they deviate, the loads of the filter are not used.
 //!
 //! Along a plan a drive that is 2 ms late misses a hundredth of its following error in 30 ms, and
 //! agrees with the model. Within a servo period its motion has nothing to do with the model: there
@@ -29,11 +31,12 @@
 
 use crate::vector::{bounded, smooth_step};
 
+use super::DEVIATIONS;
+
 /// Innovation that is always permitted, mm^2 (0.1 um): at its start the filter does not know the
 /// loads yet.
 pub(crate) const LEAST_MM2: f64 = 1e-8;
-/// Standard deviations by the statistics, and the factor of p.
-const DEVIATIONS: f64 = 4.0;
+/// Factor of p.
 const PUSHED_SHARE: f64 = 1.5;
 /// Time over which squares are averaged, s.
 const MEMORY_S: f64 = 0.005;

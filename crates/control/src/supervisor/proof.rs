@@ -1,4 +1,4 @@
-//! Test that a model has to pass after it was wrong.
+//! Question: may a model be used again after it was wrong?
 //!
 //! ```text
 //! c  change of the commanded speed: difference from its mean over the last 30 ms
@@ -7,6 +7,8 @@
 //!
 //! c falls below c0 / 2, reaches 0.9 c0, and the model holds for 60 ms from there; or it holds for T at 0.9 c0
 //! ```
+//!
+//! Evidence: the motion through which the model holds, measured by the change of the commanded speed.
 //!
 //! With three times the inertia in the model, every corner is wrong and every straight line in
 //! between is right: such a model, accepted on the line, did harm in each corner again. On a
@@ -20,10 +22,10 @@
 
 use crate::vector::{add_scaled, norm, sub};
 
-/// Time of the mean, s: the length of a free run.
-const MEAN_S: f64 = 0.03;
+use super::one_step::RUN_S;
+
 /// Time over which an error of the model shows, s: two free runs.
-const TO_SHOW_S: f64 = 0.06;
+const TO_SHOW_S: f64 = 2.0 * RUN_S;
 /// Largest T, s, and its growth factor.
 const MOST_S: f64 = 1.0;
 const AGAIN: f64 = 4.0;
@@ -101,7 +103,7 @@ impl<const N: usize> Proof<N> {
     /// Takes in a servo period in which the model is wrong or holds. At rest it gives no evidence
     /// that the model holds.
     pub(super) fn take_in(&mut self, path_mm: [f64; N], moves: bool, wrong: bool, servo_s: f64) {
-        let part = (servo_s / MEAN_S).min(1.0);
+        let part = (servo_s / RUN_S).min(1.0);
         let mut change_mm_s = 0.0;
         if let Some(last_mm) = self.path_mm.replace(path_mm) {
             let speed_mm_s = sub(path_mm, last_mm).map(|mm| mm / servo_s);

@@ -1,5 +1,5 @@
-//! Validity of a model for engagement. A wrong model makes a regulator swing, and its filter
-//! interprets the swing as loads.
+//! Question: does the model predict what the axis does? A wrong model makes a regulator swing, and
+//! its filter interprets the swing as loads.
 //!
 //! ```text
 //! m  measured position minus the position of a free run of the model, restarted every 30 ms from the state of the filter
@@ -10,6 +10,8 @@
 //!
 //! if that holds in two free runs in a row, or in one by twice as much. A single run may have begun
 //! with a speed from the steps of an encoder: a wrong model misses in each run.
+//!
+//! Evidence: the root mean square of m and its limit.
 //!
 //! s is the motion of the axis in a free run by noise and unforeseen loads, by the statistics.
 //! Where innovations are larger than that, an encoder is coarser than known: their contribution to
@@ -37,18 +39,15 @@
 //! Source: the free run as in Ljung (1999), System Identification, section 16.6, where models are
 //! validated by simulation; the rule is our own.
 
-use crate::command::FaultEvidence;
+use crate::command::{FaultEvidence, Verdict};
 use crate::vector::{bounded, dot, smooth_step};
 
 use super::one_step::{Course, OneStep, RUN_S, TO_DOUBT_S};
 use super::proof::Proof;
+use super::{DEVIATIONS, NO_ERROR_MM2};
 
 /// Time over which m^2 is averaged, s.
 const MEMORY_S: f64 = 0.02;
-/// Permitted m^2 without any noise, mm^2 (2 um).
-const LEAST_MM2: f64 = 4e-6;
-/// Standard deviations of unforeseen loads and noise.
-const DEVIATIONS: f64 = 4.0;
 /// Standard deviations of the part that the innovations show, if they are white. The innovations of
 /// a wrong model are alike, and add up to 5 of them.
 const SHOWN_DEVIATIONS: f64 = 3.0;
@@ -117,7 +116,7 @@ impl<const N: usize> Validity<N> {
     /// unforeseen loads is `unforeseen_mm2`.
     pub(crate) fn unknown(unforeseen_mm2: f64) -> Self {
         Self {
-            always_mm2: LEAST_MM2 + DEVIATIONS * DEVIATIONS * unforeseen_mm2,
+            always_mm2: NO_ERROR_MM2 + DEVIATIONS * DEVIATIONS * unforeseen_mm2,
             missed_mm2: 0.0,
             open_mm2: 0.0,
             largest_open_mm2: 0.0,
@@ -222,15 +221,21 @@ impl<const N: usize> Validity<N> {
     }
 
     /// Returns true if the models are wrong.
-    pub(crate) fn is_wrong(&self) -> bool {
+    fn is_wrong(&self) -> bool {
         self.misses() || self.proof.is_needed()
     }
 
-    /// Returns m and its permitted value if m is too large.
-    pub(crate) fn doubt(&self) -> Option<FaultEvidence> {
-        let [found_mm, limit_mm] = [self.missed_mm2, self.allowed_mm2()].map(libm::sqrt);
-        self.misses()
-            .then_some(FaultEvidence { found_mm, limit_mm })
+    /// Returns the verdict on the models; its evidence is m and its permitted value.
+    pub(crate) fn verdict(&self) -> Verdict {
+        if self.misses() {
+            let [found_mm, limit_mm] = [self.missed_mm2, self.allowed_mm2()].map(libm::sqrt);
+            let evidence = Some(FaultEvidence { found_mm, limit_mm });
+            Verdict::Wrong { evidence }
+        } else if self.proof.is_needed() {
+            Verdict::Wrong { evidence: None }
+        } else {
+            Verdict::Sound
+        }
     }
 }
 

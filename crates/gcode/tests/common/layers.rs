@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::source::code;
+use super::source::parts;
 
 /// Types whose methods stand in many files, and how a value of them is called.
 pub(crate) type Spread<'a> = &'a [(&'a str, &'a str)];
@@ -16,7 +16,7 @@ pub(crate) struct File {
 
 impl File {
     pub(crate) fn new(module: &str, text: &str) -> Self {
-        let code = code(text);
+        let (code, _) = parts(text);
         // Unit tests may use what is made of their subject.
         let code = code
             .split("#[cfg(test)]\nmod tests")
@@ -74,7 +74,7 @@ pub(crate) fn files(src: &Path) -> Vec<File> {
         .find(|path| path.exists());
     let root = std::fs::read_to_string(root.expect("a crate has a root")).expect("it can be read");
     let mut found = Vec::new();
-    walk(src, "", &code(&root), &mut found);
+    walk(src, "", &parts(&root).0, &mut found);
     found
 }
 

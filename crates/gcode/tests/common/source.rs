@@ -1,10 +1,12 @@
 //! Source text, for tests that hold rules over it.
 
-/// The text without comments and without what strings and characters hold, line for line.
-pub(crate) fn code(text: &str) -> String {
-    let mut code = String::new();
+/// Returns the text without comments, strings and characters, line for line, and the strings with
+/// their lines.
+pub(crate) fn parts(text: &str) -> (String, Vec<(usize, &str)>) {
+    let (mut code, mut strings, mut line) = (String::new(), Vec::new(), 1);
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
+        let is_string = c == '"' || rest.starts_with("r#\"");
         let skipped = if rest.starts_with("//") {
             rest.find('\n').unwrap_or(rest.len())
         } else if rest.starts_with("/*") {
@@ -17,13 +19,19 @@ pub(crate) fn code(text: &str) -> String {
             length
         } else {
             code.push(c);
+            line += usize::from(c == '\n');
             rest = &rest[c.len_utf8()..];
             continue;
         };
-        code.extend(rest[..skipped].chars().filter(|&c| c == '\n'));
+        if is_string {
+            strings.push((line, &rest[..skipped]));
+        }
+        let breaks = rest[..skipped].matches('\n').count();
+        code.extend(std::iter::repeat_n('\n', breaks));
+        line += breaks;
         rest = &rest[skipped..];
     }
-    code
+    (code, strings)
 }
 
 /// Returns the position behind the string that starts the text.

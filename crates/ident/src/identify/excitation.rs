@@ -1,7 +1,7 @@
 //! The identification programme, cut by a simulated machine: laps of circles under a controller
 //! that disturbs the command and records.
 
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+use feedwright_control::{Command, Controller, Measured, Schedule, SelfReport, Window};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_plan::vector::{add_scaled, sub};
 use feedwright_sim::{Machine, Run, Stages, path_steps};
@@ -148,8 +148,11 @@ impl<const N: usize> Controller<N> for ExcitationController<'_, N> {
         self.lap.clear();
     }
 
-    fn corrects(&self) -> bool {
-        false
+    fn report(&self) -> SelfReport<N> {
+        SelfReport {
+            corrects: false,
+            ..SelfReport::CORRECTS
+        }
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {

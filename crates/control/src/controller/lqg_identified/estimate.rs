@@ -19,11 +19,12 @@ use crate::axis::statistics::AxisStatistics;
 use crate::axis::{self, AxisModel};
 use crate::sine::sin;
 use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
+use crate::supervisor::outliers::{self, Outliers};
+use crate::supervisor::whiteness::{LEVELS, Whiteness};
 
+use super::gain_table::GainTable;
 use super::linear::{LinearAxis, STATES, measured_rad2};
-use super::outliers::{self, Outliers};
 use super::riccati::{StateMatrix, applied, filter};
-use super::whiteness::{GainTable, LEVELS, Whiteness};
 
 /// Number of references that are kept, servo periods: 20 ms each way at 1 ms, the longest of a
 /// machine file, and a margin.
@@ -35,10 +36,6 @@ const LEAST_SHARE: f64 = 0.01;
 
 /// Smallest part of an innovation that counts as noise of the measurement.
 const LEAST_SHARE_LEFT: f64 = 1e-6;
-
-/// Largest load that is plausible, as a part of the torque limit: about the load that a drive with
-/// three times its rated torque for a moment can hold.
-const LARGEST_LOAD: f64 = 1.0 / 3.0;
 
 /// Constant part of an axis.
 #[derive(Debug, Clone)]
@@ -100,8 +97,10 @@ impl Estimate {
 /// State that is learned from innovations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Learnt {
-    pub(super) whiteness: Whiteness,
-    pub(super) outliers: Outliers,
+    whiteness: Whiteness,
+    outliers: Outliers,
+    /// The last measurement, rad.
+    measured_rad: Option<f64>,
 }
 
 impl Learnt {
@@ -109,7 +108,15 @@ impl Learnt {
     pub(super) const NOTHING: Self = Self {
         whiteness: Whiteness::GIVEN,
         outliers: Outliers::NONE,
+        measured_rad: None,
     };
+
+    /// Takes in a measurement. Returns true if it repeats the last one to the bit.
+    fn repeats(&mut self, measured_rad: f64) -> bool {
+        self.measured_rad
+            .replace(measured_rad)
+            .is_some_and(|last_rad| last_rad.to_bits() == measured_rad.to_bits())
+    }
 }
 
 /// Result of a measurement.
@@ -211,7 +218,7 @@ impl FilterModel {
 
     /// Returns the gains of the filter by the statistics.
     pub(super) fn gains_as_given(&self) -> [f64; STATES] {
-        Whiteness::GIVEN.gains(&self.gains)
+        self.gains.at(Whiteness::GIVEN.power())
     }
 
     /// Returns the estimate of an axis at an angle, after a long motion at a constant speed without
@@ -296,14 +303,12 @@ impl FilterModel {
         let shown_rad = self.shown_rad(estimate);
         let missed_rad = measured_rad - shown_rad;
         let (believed_rad, servo_s) = (self.believed_rad, self.axis_model.periods.servo_s);
-        let taken_rad =
-            learnt
-                .outliers
-                .bounded_rad(measured_rad, missed_rad, believed_rad, servo_s);
-        learnt
-            .whiteness
-            .take_in(measured_rad, taken_rad, self.least_rad);
-        let gains = learnt.whiteness.gains(&self.gains);
+        let repeats = learnt.repeats(measured_rad);
+        let taken_rad = learnt
+            .outliers
+            .bounded_rad(repeats, missed_rad, believed_rad, servo_s);
+        learnt.whiteness.take_in(repeats, taken_rad, self.least_rad);
+        let gains = self.gains.at(learnt.whiteness.power());
         estimate.correct(gains.map(|gain| gain * taken_rad));
         let [of_angle, ..] = gains;
         let expected_rad2 = learnt.whiteness.variance() * self.measured_rad2
@@ -361,13 +366,6 @@ impl FilterModel {
         self.drive = DriveModel::new(&self.axis_model, known.drive);
         self.mechanics = MechanicsModel::new(&self.axis_model, known.friction, known.transmission);
         self.late = late(known);
-    }
-
-    /// Returns true if a load of this size is plausible. A larger one indicates a wrong model of
-    /// the axis: other gains, another inertia.
-    pub(super) fn is_possible(&self, estimate: &Estimate) -> bool {
-        // A NaN load fails this comparison.
-        estimate.load_nm().abs() <= LARGEST_LOAD * self.axis_model.parameters.torque_limit_nm
     }
 
     /// Returns the estimate at the time at which a reference that is sent now begins to act.
@@ -448,5 +446,19 @@ impl ModelTrial {
         if self.for_s >= RUN_S {
             (self.free, self.for_s) = (*estimate, 0.0);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_measurement_repeats_only_the_one_before_it() {
+        let mut learnt = Learnt::NOTHING;
+        assert_eq!(
+            [1.0, 1.0, 0.0, -0.0, 1.0].map(|rad| learnt.repeats(rad)),
+            [false, true, false, false, false]
+        );
     }
 }

@@ -27,45 +27,23 @@
 //! | 5 | constant load, N m | 1; the filter compensates it, and it is only kept apart from the others |
 //! | 6 | acceleration feedforward | torque for the commanded acceleration |
 //!
-//! Free runs decide which of the two models is followed. Both begin at the states of their filters,
-//! and miss the measurement by m:
-//!
-//! ```text
-//! l <- l + ln (<m^2> + e^2) / (<m_learned^2> + e^2)        over a free run
-//! e^2 = (0.1 um)^2 + 16 variances of the measurement + the mean square error of a free run by unforeseen loads
-//! ```
-//!
-//! The learned model is followed from l = 6.9 on, and no longer below 0: of correct nominal models,
-//! one in a thousand is replaced (Wald). Where another axis of the machine follows its learned
-//! model, one in a hundred, l = 4.6: with a correct model in one axis and a wrong one in the other,
-//! the axes lag by different times. With 2.3 in place of 6.9, 36 cuts with wrong models leave 0.069
-//! of the error in the median in place of 0.087, and with 0 one of them is worse. A run counts once,
-//! however long: its error at its end stems from its beginning. Every 4 ms the run is checked: a
-//! run that alone is sufficient evidence for the learned model counts at once. l counts up to 13.8
-//! (Page), so that a change is noticed. A learned model that is certainly worse is begun anew. A
-//! nominal model whose errors are within the noise stays as it is to the bit.
+//! Free runs decide which of the two models is followed (`supervisor/model_choice.rs`).
 //!
 //! Differences 2, 3 and 6 are learned only within [`EVEN_S`] of an acceleration of the path. At
 //! constant speed there is no evidence on them, and effects outside the model, such as cogging, are
 //! mistaken for them: on a plate in inches a correct inertia is then halved.
 //!
-//! Rejected alternatives: innovations in place of free runs rejected correct models, because steps
-//! of an encoder are not white noise. A single filter with the nominal model, whose innovations are
-//! computed, cannot decide: its own first order states that they are large. Least squares on the
-//! innovations of the nominal filter diverge where those are bounded as outliers. Where both models
-//! miss alike, by a load that neither has, l is a random walk, which reaches 6.9 sooner or later:
-//! along 20 programs recorded in LinuxCNC, a model identified on `tnv40` left 0.063 and 0.059 of
-//! the error in two, and 0.023 and 0.010 where it was kept. With d^2 / 2 subtracted in each run,
-//! where d is the logarithm, l hardly reaches it (de la Pena, 1999). But then one of the cuts with
-//! models of other machines is worse (linuxcnc/servo/tests/property_wrong_model.rs).
+//! Rejected alternative: least squares on the innovations of the nominal filter diverge where those
+//! are bounded as outliers.
 //!
 //! Source: Friedland (1969), Treatment of bias in recursive filtering, IEEE Trans. Automatic
 //! Control 14(4), for the two filters; Kulhavy (1987), Restricted exponential forgetting in
-//! real-time identification, Automatica 23(5); Wald (1947), Sequential Analysis, and Page (1954),
-//! Continuous inspection schemes, Biometrika 41, for the test.
+//! real-time identification, Automatica 23(5).
 
 use crate::axis::drive::DriveReference;
 use crate::axis::knowledge::AxisKnowledge;
+use crate::supervisor::DEVIATIONS;
+use crate::supervisor::model_choice::{ModelChange, ModelChoice};
 use crate::supervisor::one_step::{LEAST_MM2, run_periods};
 use crate::vector::bounded;
 
@@ -105,18 +83,6 @@ const FIRST_ORDER: f64 = 0.3;
 const BELIEVED: f64 = 3.0;
 /// Speed below which an axis shows its friction at rest, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
-/// l above which the learned model is followed: of correct nominal models, one in a thousand is
-/// replaced.
-const CERTAIN: f64 = 6.9;
-/// The same where another axis follows its learned model: one in a hundred.
-const LIKELY: f64 = 4.6;
-/// Largest l, and its largest change at once.
-const MOST_CERTAIN: f64 = 2.0 * CERTAIN;
-const MOST_OF_RUN: f64 = 7.0;
-/// Standard deviations of the measurement that the encoder explains.
-const DEVIATIONS: f64 = 4.0;
-/// Time between two checks of the free runs, s.
-const COMPARED_S: f64 = 0.004;
 
 /// Differences between a machine and its model.
 pub(super) type Differences = [f64; DIFFERENCES];
@@ -162,61 +128,6 @@ pub(super) struct Learner {
     bounds: [[f64; 2]; DIFFERENCES],
     /// Mean square error of a servo period by the encoder and unforeseen loads, rad^2.
     noise_rad2: f64,
-    compared_periods: u32,
-}
-
-/// Errors of free runs of the two models.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Runs {
-    /// Sums of squares of the followed model and of the other one, rad^2, and the length of these
-    /// runs, servo periods.
-    missed_rad2: [f64; 2],
-    periods: u32,
-    /// l before these runs, and l with their evidence.
-    before: f64,
-    learned: f64,
-}
-
-impl Runs {
-    const NONE: Self = Self {
-        missed_rad2: [0.0; 2],
-        periods: 0,
-        before: 0.0,
-        learned: 0.0,
-    };
-
-    /// Evaluates the errors of the runs, in which the learned model was followed or not;
-    /// `noise_rad2` is the part of a servo period that noise explains. Unfinished runs count only
-    /// if they alone are sufficient evidence for the learned model.
-    fn look(&mut self, is_followed: bool, noise_rad2: f64, is_over: bool) {
-        let explained_rad2 = f64::from(self.periods) * noise_rad2;
-        let [followed, other] = self.missed_rad2.map(|rad2| rad2 + explained_rad2);
-        let likelier = libm::log(if is_followed {
-            other / followed
-        } else {
-            followed / other
-        });
-        let likelier = if likelier.is_nan() {
-            -MOST_OF_RUN
-        } else {
-            bounded(likelier, -MOST_OF_RUN, MOST_OF_RUN)
-        };
-        if is_over || likelier >= CERTAIN {
-            self.learned = bounded(self.before + likelier, -CERTAIN, MOST_CERTAIN);
-        }
-        if is_over {
-            (self.missed_rad2, self.periods, self.before) = ([0.0; 2], 0, self.learned);
-        }
-    }
-}
-
-/// Result of a comparison of the two models.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct ModelChoice {
-    /// True if the other model is followed from now on.
-    pub(super) turns: bool,
-    /// True if the learned model is the nominal one again.
-    pub(super) begins_anew: bool,
 }
 
 /// State of the learning of an axis.
@@ -226,11 +137,10 @@ pub(super) struct Learning {
     found: Differences,
     covariance: [[f64; DIFFERENCES]; DIFFERENCES],
     applied: Differences,
-    is_followed: bool,
     moves: bool,
     /// Mean square of the residual, rad^2.
     left_rad2: f64,
-    runs: Runs,
+    choice: ModelChoice,
     /// Commanded speeds and errors of the position, rad/s and rad, the newest first.
     commanded_rad_s: [f64; KEPT_PERIODS],
     error_rad: [f64; KEPT_PERIODS],
@@ -267,8 +177,6 @@ impl Learner {
             linear.spread_rad2(&nominal.statistics, run_periods(nominal.periods.servo_s));
         let noise_rad2 =
             least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics);
-        // The cast saturates where the float is too large or NaN.
-        let compared_periods = (libm::round(COMPARED_S / nominal.periods.servo_s) as u32).max(1);
         Self {
             nominal,
             states,
@@ -276,7 +184,6 @@ impl Learner {
             priors,
             bounds,
             noise_rad2,
-            compared_periods,
         }
     }
 
@@ -292,10 +199,9 @@ impl Learner {
             found: [0.0; DIFFERENCES],
             covariance,
             applied: [0.0; DIFFERENCES],
-            is_followed: false,
             moves: false,
             left_rad2: 0.0,
-            runs: Runs::NONE,
+            choice: ModelChoice::nominal(self.noise_rad2, self.nominal.periods.servo_s),
             commanded_rad_s: [0.0; KEPT_PERIODS],
             error_rad: [0.0; KEPT_PERIODS],
             command_rad: None,
@@ -506,40 +412,11 @@ impl Learner {
         learning: &mut Learning,
         missed_rad: [f64; 2],
         is_likely: bool,
-    ) -> ModelChoice {
-        let was_followed = learning.is_followed;
-        let runs = &mut learning.runs;
-        let [followed_rad, other_rad] = missed_rad;
-        if !(if was_followed {
-            followed_rad
-        } else {
-            other_rad
-        })
-        .is_finite()
-        {
-            runs.learned = -CERTAIN;
-        } else if learning.moves {
-            runs.missed_rad2
-                .iter_mut()
-                .zip(missed_rad)
-                .for_each(|(sum, rad)| *sum += rad * rad);
-            runs.periods += 1;
-            let is_over = runs.periods >= run_periods(self.nominal.periods.servo_s);
-            if is_over || runs.periods.is_multiple_of(self.compared_periods) {
-                runs.look(was_followed, self.noise_rad2, is_over);
-            }
-        }
-        learning.is_followed = runs.learned
-            > if was_followed {
-                0.0
-            } else if is_likely {
-                LIKELY
-            } else {
-                CERTAIN
-            };
-        let turns = was_followed != learning.is_followed;
-        let begins_anew = was_followed && turns || learning.runs.learned <= -CERTAIN;
-        if begins_anew {
+    ) -> ModelChange {
+        let change = learning
+            .choice
+            .take_in(missed_rad, learning.moves, is_likely);
+        if change.begins_anew {
             let Learning {
                 commanded_rad_s,
                 error_rad,
@@ -557,7 +434,7 @@ impl Learner {
                 ..self.begin()
             };
         }
-        ModelChoice { turns, begins_anew }
+        change
     }
 
     /// Returns the axis without any difference.
@@ -574,7 +451,7 @@ impl Learner {
 impl Learning {
     /// Returns true if the learned model is followed.
     pub(super) fn is_followed(&self) -> bool {
-        self.is_followed
+        self.choice.is_learned()
     }
 }
 
@@ -602,46 +479,6 @@ fn dot(a: &Differences, b: &Differences) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Returns l after a number of comparisons. The nominal model misses by the first angle, the
-    /// learned one by the second, rad; noise is 1 rad.
-    fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
-        let mut runs = Runs::NONE;
-        for _ in 0..times {
-            (runs.missed_rad2, runs.periods) =
-                ([nominal_rad * nominal_rad, learned_rad * learned_rad], 1);
-            runs.look(false, 1.0, true);
-        }
-        runs.learned
-    }
-
-    #[test]
-    fn two_models_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
-        assert!(after(10, [0.5, 0.1]) < CERTAIN);
-        assert_eq!(after(100, [1.0, 1.0]), 0.0);
-        assert!(
-            after(1, [100.0, 0.0]) > CERTAIN,
-            "one run is enough where it is beyond doubt"
-        );
-        assert!(
-            after(1, [20.0, 0.0]) < CERTAIN && after(2, [20.0, 0.0]) > CERTAIN,
-            "and two are soon"
-        );
-        assert_eq!(after(100, [1.0, 100.0]), -CERTAIN);
-        assert_eq!(after(2, [1.0, f64::NAN]), -CERTAIN);
-        assert_eq!(after(100, [100.0, 1.0]), MOST_CERTAIN);
-    }
-
-    #[test]
-    fn a_learned_model_that_is_followed_is_judged_the_other_way_round() {
-        let mut runs = Runs {
-            missed_rad2: [1e4, 0.0],
-            periods: 1,
-            ..Runs::NONE
-        };
-        runs.look(true, 1.0, true);
-        assert_eq!(runs.learned, -CERTAIN);
-    }
 
     #[test]
     fn differences_make_an_axis_that_a_machine_can_have() {

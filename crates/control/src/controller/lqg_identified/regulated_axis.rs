@@ -7,6 +7,8 @@ use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisModel, AxisState, Parameters};
+use crate::supervisor::load;
+use crate::supervisor::model_choice::ModelChange;
 use crate::supervisor::one_step::{OneStep, run_periods};
 use crate::supervisor::validity::Trusted;
 
@@ -14,7 +16,7 @@ use super::approach::{self, Room, WeightedGains};
 use super::command_weight::{self, CommandHistory, CommandModel, REGULATED};
 use super::control_weight::LqgSettings;
 use super::estimate::{Estimate, FilterModel, Innovation, KEPT_PERIODS, Learnt, ModelTrial, Sent};
-use super::learning::{Learner, Learning, ModelChoice};
+use super::learning::{Learner, Learning};
 use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 use crate::controller::OffsetBounds;
@@ -413,12 +415,7 @@ impl AxisLqg {
         else {
             return false;
         };
-        let possible = self.model.is_possible(&real.tracked.estimate);
-        *missed_rad = if possible {
-            told.missed_rad
-        } else {
-            f64::INFINITY
-        };
+        *missed_rad = told.missed_rad;
         if turned && is_alone {
             *open = real.tracked;
         }
@@ -478,7 +475,7 @@ impl AxisLqg {
             model.follow(known);
             run.tracked.estimate.correct(moved);
         }
-        let ModelChoice { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
+        let ModelChange { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
         if turns {
             core::mem::swap(&mut self.model, &mut self.other);
             core::mem::swap(&mut self.known, &mut self.other_known);
@@ -545,6 +542,14 @@ impl AxisLqg {
                 [with_rad - without_rad, *missed_rad].map(|rad| rad * mm)
             },
         )
+    }
+
+    /// Returns true if the load that the filter finds can be real.
+    pub(super) fn is_possible(&self) -> bool {
+        let torque_limit_nm = self.model.axis_model.parameters.torque_limit_nm;
+        self.state.as_ref().is_none_or(|running| {
+            load::is_possible(running.real.tracked.estimate.load_nm(), torque_limit_nm)
+        })
     }
 
     /// Returns the error of the free run of the model, mm.

@@ -1,8 +1,8 @@
-//! Weight of the measurements in the filter, learned from the whiteness of its innovations.
+//! Question: is the noise of the measurement as stated?
 //!
 //! ```text
 //! c = 2 nu(k) nu(k-1) / (nu(k)^2 + nu(k-1)^2 + 2 e^2)      in -1 to 1, zero in the mean where the innovations nu are white
-//! l <- l - m c,   L0 <= l <= L1                             the variance of the measurement is taken to be 4^l times as given
+//! l <- l - m c,   0 <= l <= 6                               the variance of the measurement is taken to be 4^l times as given
 //! ```
 //!
 //! A gain that is too high follows the noise of the encoder and has to reverse it: adjacent
@@ -10,6 +10,8 @@
 //! is too low spreads a real motion over several innovations: c is positive. The gains of a filter
 //! depend on the ratio of measurement noise to disturbance, so that one number is enough for both.
 //! There is one set of gains for each whole l; between them they are interpolated.
+//!
+//! Evidence: the correlation of adjacent innovations. The filter takes l as the noise.
 //!
 //! The division makes a shock, however large, one step of m. A frozen encoder, and an axis that
 //! stands still between two steps of its encoder, give no evidence on noise: a measurement that
@@ -19,101 +21,52 @@
 //! Trans. Automatic Control 15(2): only a filter with the optimal gain has white innovations. The
 //! recursion with normalized products is our own.
 
-use super::linear::STATES;
-
-/// Lowest and highest power of four.
-const LOWEST: i32 = 0;
-const HIGHEST: i32 = 6;
-/// Number of levels.
-pub(super) const LEVELS: usize = (HIGHEST - LOWEST + 1) as usize;
+/// Number of whole powers of four, from 0 on.
+pub(crate) const LEVELS: usize = 7;
 /// Step of the power for innovations that are alike.
 const STEP: f64 = 0.01;
 
-/// Gains of the filter by the ratio of the measurement's variance to the given one, in powers of
-/// four.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct GainTable {
-    gains: [[f64; STATES]; LEVELS],
-}
-
-impl GainTable {
-    /// Creates the table of a filter; `gains` returns its gains for a variance of the measurement,
-    /// and `given_rad2` is the variance by the statistics.
-    pub(super) fn new(given_rad2: f64, gains: impl Fn(f64) -> [f64; STATES]) -> Self {
-        let at =
-            |level: usize| gains(given_rad2 * libm::exp2(2.0 * f64::from(LOWEST + level as i32)));
-        Self {
-            gains: core::array::from_fn(at),
-        }
-    }
-
-    /// Returns the gains of each level.
-    pub(super) fn levels(&self) -> &[[f64; STATES]; LEVELS] {
-        &self.gains
-    }
-
-    /// Creates a table with the same gains at each level, for a measurement with the given
-    /// variance.
-    pub(super) fn constant(gains: [f64; STATES]) -> Self {
-        Self {
-            gains: [gains; LEVELS],
-        }
-    }
-
-    fn at(&self, power: f64) -> [f64; STATES] {
-        let level = power - f64::from(LOWEST);
-        // The cast saturates to zero where the float is NaN.
-        let below = (libm::floor(level) as usize).min(LEVELS - 2);
-        let part = level - below as f64;
-        let [lower, upper] =
-            [below, below + 1].map(|n| self.gains.get(n).copied().unwrap_or([0.0; STATES]));
-        core::array::from_fn(|i| lower[i] + part * (upper[i] - lower[i]))
-    }
-}
-
 /// State of the whiteness test.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Whiteness {
+pub(crate) struct Whiteness {
     /// Power of four by which the variance of the measurement is taken to be larger than given.
     power: f64,
     before_rad: f64,
-    measured_rad: f64,
 }
 
 impl Whiteness {
     /// State for the variance as given.
-    pub(super) const GIVEN: Self = Self {
+    pub(crate) const GIVEN: Self = Self {
         power: 0.0,
         before_rad: 0.0,
-        measured_rad: f64::NAN,
     };
 
     /// Returns the variance of the measurement as a multiple of the given one.
-    pub(super) fn variance(&self) -> f64 {
+    pub(crate) fn variance(&self) -> f64 {
         libm::exp2(2.0 * self.power)
     }
 
-    /// Returns the gains of the filter.
-    pub(super) fn gains(&self, table: &GainTable) -> [f64; STATES] {
-        table.at(self.power)
+    /// Returns l.
+    pub(crate) fn power(&self) -> f64 {
+        self.power
     }
 
     /// Returns the nearest whole level.
-    pub(super) fn level(&self) -> usize {
+    pub(crate) fn level(&self) -> usize {
         // The cast saturates to zero where the float is NaN.
-        (libm::round(self.power - f64::from(LOWEST)) as usize).min(LEVELS - 1)
+        (libm::round(self.power) as usize).min(LEVELS - 1)
     }
 
-    /// Takes in a measurement and its innovation; innovations below `least_rad` are rounding.
-    pub(super) fn take_in(&mut self, measured_rad: f64, innovation_rad: f64, least_rad: f64) {
-        let repeats = measured_rad.to_bits() == self.measured_rad.to_bits();
+    /// Takes in an innovation; below `least_rad` it is rounding. A measurement that `repeats` the
+    /// last one to the bit gives no evidence.
+    pub(crate) fn take_in(&mut self, repeats: bool, innovation_rad: f64, least_rad: f64) {
         let squares = innovation_rad * innovation_rad + self.before_rad * self.before_rad;
         let alike =
             2.0 * innovation_rad * self.before_rad / (squares + 2.0 * least_rad * least_rad);
-        (self.before_rad, self.measured_rad) = (innovation_rad, measured_rad);
+        self.before_rad = innovation_rad;
         if !repeats && alike.is_finite() {
             let power = self.power - STEP * alike;
-            self.power = power.max(f64::from(LOWEST)).min(f64::from(HIGHEST));
+            self.power = power.max(0.0).min((LEVELS - 1) as f64);
         }
     }
 }
@@ -136,30 +89,23 @@ mod tests {
     }
 
     /// Gain of the filter of a random walk with steps of variance 1, as in
-    /// [`super::super::riccati`].
+    /// `controller/lqg_identified/riccati.rs`.
     fn walk_gain(variance: f64) -> f64 {
         let p = 0.5 + libm::sqrt(0.25 + variance);
         p / (p + variance)
     }
 
-    fn table() -> GainTable {
-        GainTable::new(1.0, |variance| {
-            core::array::from_fn(|i| if i == 0 { walk_gain(variance) } else { 0.0 })
-        })
-    }
-
     /// The power that is found for a random walk that is measured with noise of this standard
     /// deviation, where 1 is given: mean of the last half, and the highest of all.
     fn found(noise: f64, periods: u32, mut disturb: impl FnMut(u32, f64) -> f64) -> (f64, f64) {
-        let (table, mut whiteness) = (table(), Whiteness::GIVEN);
+        let mut whiteness = Whiteness::GIVEN;
         let (mut seed, mut place, mut estimate, mut sum, mut highest) = (7, 0.0, 0.0, 0.0, 0.0_f64);
         for n in 0..periods {
             place += normal(&mut seed);
             let measured = disturb(n, place + noise * normal(&mut seed));
             let innovation = measured - estimate;
-            whiteness.take_in(measured, innovation, 0.01);
-            let [gain, ..] = whiteness.gains(&table);
-            estimate += gain * innovation;
+            whiteness.take_in(false, innovation, 0.01);
+            estimate += walk_gain(whiteness.variance()) * innovation;
             highest = highest.max(whiteness.power);
             sum += if 2 * n >= periods {
                 2.0 * whiteness.power / f64::from(periods)
@@ -191,21 +137,9 @@ mod tests {
         .1;
         assert!(shocked <= calm + 10.0 * STEP, "{calm} {shocked}");
         let mut frozen = Whiteness::GIVEN;
-        (0..1000).for_each(|n| frozen.take_in(1.0, if n % 2 == 0 { 1.0 } else { -1.0 }, 0.01));
+        (0..1000).for_each(|n| frozen.take_in(n > 0, if n % 2 == 0 { 1.0 } else { -1.0 }, 0.01));
         assert!(frozen.power <= STEP, "{}", frozen.power);
-        frozen.take_in(f64::NAN, f64::NAN, 0.01);
+        frozen.take_in(false, f64::NAN, 0.01);
         assert!(frozen.power.is_finite());
-    }
-
-    #[test]
-    fn between_two_powers_gains_are_interpolated_and_beyond_the_last_they_stay() {
-        let table = table();
-        let [[low, ..], [middle, ..], [high, ..]] = [1.0, 1.5, 2.0].map(|power| table.at(power));
-        assert_eq!([low, high], [walk_gain(4.0), walk_gain(16.0)]);
-        assert!((middle - 0.5 * (low + high)).abs() < 1e-15);
-        assert_eq!(
-            table.at(f64::from(HIGHEST))[0],
-            walk_gain(libm::exp2(2.0 * f64::from(HIGHEST)))
-        );
     }
 }

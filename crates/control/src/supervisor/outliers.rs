@@ -1,5 +1,5 @@
-//! Bounds of implausible measurements: from an encoder that is frozen, or leaps by less than the
-//! supervisor detects.
+//! Question: can an innovation be motion of the axis? An encoder may be frozen, or leap by less than
+//! `feedback.rs` detects.
 //!
 //! ```text
 //! |nu| <= 4 sigma + (Tmax / J) Ts^2 / 2
@@ -11,6 +11,8 @@
 //! axis, or the model is not the axis's. The first does not last, because the supervisor detects it
 //! by then. An innovation that remains after [`LASTS_S`] counts as the second, and is used in full.
 //!
+//! Evidence: the innovation of the filter and its bound; the filter uses the part within the bound.
+//!
 //! Source: bounded innovations as in Masreliez and Martin (1977), "Robust Bayesian estimation for
 //! the linear model and robustifying the Kalman filter", IEEE Trans. Automatic Control 22(3); the
 //! bound is our own.
@@ -18,14 +20,14 @@
 use crate::axis::AxisModel;
 use crate::vector::bounded;
 
-/// Standard deviations of the measurement within the bound.
-const DEVIATIONS: f64 = 4.0;
+use super::DEVIATIONS;
+
 /// Time after which a large innovation is used in full, s: the supervisor detects a frozen encoder
 /// within 20 ms.
 const LASTS_S: f64 = 0.025;
 
 /// Returns the largest innovation that is used in full, rad.
-pub(super) fn believed_rad(axis_model: &AxisModel, measured_rad2: f64) -> f64 {
+pub(crate) fn believed_rad(axis_model: &AxisModel, measured_rad2: f64) -> f64 {
     let servo_s = axis_model.periods.servo_s;
     let accelerated_rad = 0.5 * axis_model.parameters.torque_limit_nm
         / axis_model.parameters.inertia_kg_m2
@@ -34,30 +36,25 @@ pub(super) fn believed_rad(axis_model: &AxisModel, measured_rad2: f64) -> f64 {
     DEVIATIONS * libm::sqrt(measured_rad2) + accelerated_rad
 }
 
-/// Time for which innovations were larger than the bound, and the last measurement.
+/// Time for which innovations were larger than the bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Outliers {
+pub(crate) struct Outliers {
     for_s: f64,
-    measured_rad: f64,
 }
 
 impl Outliers {
     /// State before any measurement.
-    pub(super) const NONE: Self = Self {
-        for_s: 0.0,
-        measured_rad: f64::NAN,
-    };
+    pub(crate) const NONE: Self = Self { for_s: 0.0 };
 
-    /// Returns the part of the innovation of a measurement that is used, rad.
-    pub(super) fn bounded_rad(
+    /// Returns the part of the innovation of a measurement that is used, rad. A measurement may
+    /// repeat the last one to the bit.
+    pub(crate) fn bounded_rad(
         &mut self,
-        measured_rad: f64,
+        repeats: bool,
         missed_rad: f64,
         believed_rad: f64,
         servo_s: f64,
     ) -> f64 {
-        let repeats = measured_rad.to_bits() == self.measured_rad.to_bits();
-        self.measured_rad = measured_rad;
         if missed_rad.abs() <= believed_rad {
             self.for_s = 0.0;
             return missed_rad;
@@ -81,11 +78,8 @@ mod tests {
 
     #[test]
     fn what_is_small_is_believed_and_what_is_large_only_where_it_lasts() {
-        let (mut outliers, mut n) = (Outliers::NONE, 0.0);
-        let mut believed = |missed_rad| {
-            n += 1.0;
-            outliers.bounded_rad(n, missed_rad, 0.01, SERVO_S)
-        };
+        let mut outliers = Outliers::NONE;
+        let mut believed = |missed_rad| outliers.bounded_rad(false, missed_rad, 0.01, SERVO_S);
         assert_eq!([0.0, 0.01, -0.009].map(&mut believed), [0.0, 0.01, -0.009]);
         assert_eq!(
             [1.0, -1.0, f64::INFINITY].map(&mut believed),
@@ -101,7 +95,7 @@ mod tests {
     fn of_a_frozen_encoder_nothing_is_believed_unless_the_axis_stands() {
         let mut outliers = Outliers::NONE;
         let taken =
-            [0.0, 0.005, 0.05, 0.1].map(|missed| outliers.bounded_rad(1.0, missed, 0.01, SERVO_S));
+            [0.0, 0.005, 0.05, 0.1].map(|missed| outliers.bounded_rad(true, missed, 0.01, SERVO_S));
         assert_eq!(taken, [0.0, 0.005, 0.0, 0.0]);
     }
 }

@@ -1,5 +1,5 @@
-//! The trial of a correction: it enters the loop when the measured errors show that it helps, and
-//! leaves when they show harm.
+//! Question: does a correction without a model of the axes help? It enters the loop when the
+//! measured errors show that it helps, and leaves when they show harm.
 //!
 //! Outside the loop the controller decides on an offset that is not commanded. The error that it
 //! would leave follows from the measured error and the linear servo G. Its lag L is the time by
@@ -18,6 +18,8 @@
 //! 1939). A wrong gain or a wrong sign therefore engages with that probability. Each further trial
 //! has half of alpha; all trials of a cut together err with at most 2 alpha.
 //!
+//! Evidence: W.
+//!
 //! While W grows from 1 to 1/alpha, the share `ln W / ln(1/alpha)` of the offset is commanded, and
 //! after that all of it.
 //!
@@ -32,7 +34,7 @@
 //! constant of a usual position loop, so that a third of the last block remains in it. The error
 //! rate is therefore nominal.
 
-use super::{Command, Measured};
+use crate::command::{Command, Measured};
 use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
 use crate::window::Window;
 
@@ -94,7 +96,7 @@ impl<const N: usize> FeltOffset<N> {
 
 /// A trial and its evidence.
 #[derive(Debug, Clone)]
-pub(super) struct CorrectionTrial<const N: usize> {
+pub(crate) struct CorrectionTrial<const N: usize> {
     wanted_mm: [f64; N],
     /// M, s.
     response_s: f64,
@@ -115,7 +117,7 @@ pub(super) struct CorrectionTrial<const N: usize> {
 
 impl<const N: usize> CorrectionTrial<N> {
     /// Creates the trial before a program, for axes whose speed loops respond within `response_s`.
-    pub(super) const fn new(response_s: f64) -> Self {
+    pub(crate) const fn new(response_s: f64) -> Self {
         Self {
             wanted_mm: [0.0; N],
             response_s,
@@ -132,17 +134,17 @@ impl<const N: usize> CorrectionTrial<N> {
     }
 
     /// Returns the offset from which the next decision continues, mm.
-    pub(super) fn wanted_mm(&self) -> [f64; N] {
+    pub(crate) fn wanted_mm(&self) -> [f64; N] {
         self.wanted_mm
     }
 
     /// Returns true if the full correction is commanded.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.engaged && self.share >= 1.0
     }
 
     /// Takes in a measurement. Returns the error that the full correction would have left, mm.
-    pub(super) fn observe(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> [f64; N] {
+    pub(crate) fn observe(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> [f64; N] {
         let error_mm = measured.contour.vector_mm;
         let off_mm = norm(sub(window.offset_mm, scale(self.share, self.wanted_mm)));
         if off_mm > FOLLOWED_MM {
@@ -176,7 +178,7 @@ impl<const N: usize> CorrectionTrial<N> {
     }
 
     /// Returns the command for the wanted one.
-    pub(super) fn follow(&mut self, wanted: Command<N>) -> Command<N> {
+    pub(crate) fn follow(&mut self, wanted: Command<N>) -> Command<N> {
         self.wanted_mm = wanted.offset_mm;
         let grown = libm::log(self.help.max(1.0)) / libm::log(self.enough);
         let allowed = if self.engaged { 1.0 } else { grown };
