@@ -3,7 +3,6 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `peers/rows.rs` | the parameters of the rows |
 //! | `peers/closed_loop.rs` | the closed loop of an axis, for the filter that inverts it |
 //! | `peers/make.rs` | how each row is made from what is known of a machine |
 //! | `peers/model_predictive.rs`, `peers/iterative_learning.rs` | those that are not fit for a servo thread |
@@ -12,9 +11,9 @@
 mod cross_coupled;
 mod contour_compensation;
 mod corner_contour;
-mod constrained_feedrate;
 mod fuzzy_feedrate;
 mod cross_coupled_feedrate;
+mod constrained_feedrate;
 mod input_shaping;
 mod zero_phase;
 mod sum;
@@ -27,21 +26,13 @@ pub(crate) mod model_predictive;
 #[cfg(test)]
 mod fixture;
 mod closed_loop;
-mod rows;
 mod make;
 
 use feedwright::{
     Controllers, Entry, FEEDFORWARD, LQG_IDENTIFIED, MAGNITUDE_ONLY, TWO_DIMENSIONAL, UNCORRECTED,
     controller,
 };
-use feedwright_control::{ACCELERATION_GAIN, FRICTION_GAIN, Parameter, VELOCITY_GAIN};
-use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, COMPENSATION_FILTER,
-    COMPENSATION_RATE, CONSTRAINED_ALLOWED, CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD,
-    CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST,
-    GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE, OBSERVER_BANDWIDTH, PLAN_PERIOD_S, RATE_WEIGHT,
-    SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
-};
+use feedwright_control::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
 
 /// PID control of the contour error, added to the command across the path.
 pub(crate) static CROSS_COUPLED: Entry = controller!(
@@ -50,7 +41,7 @@ pub(crate) static CROSS_COUPLED: Entry = controller!(
     "Koren (1980); Srinivasan and Kulkarni (1990)",
     Nothing,
     laps: 1,
-    [CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+    [cross_coupled::KP, cross_coupled::KI, cross_coupled::KD],
     |setup, values| make::cross_coupled(setup, values)
 );
 
@@ -61,7 +52,7 @@ pub(crate) static CONTOUR_COMPENSATION: Entry = controller!(
     "Lee and Jeon (1999)",
     Nothing,
     laps: 1,
-    [COMPENSATION_RATE, COMPENSATION_FILTER],
+    [contour_compensation::RATE, contour_compensation::FILTER],
     |setup, values| make::contour_compensation(setup, values)
 );
 
@@ -72,7 +63,7 @@ pub(crate) static FUZZY_FEEDRATE: Entry = controller!(
     "Tsai and others (1995), the feedrate alone",
     Nothing,
     laps: 1,
-    [FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
+    [fuzzy_feedrate::ERROR, fuzzy_feedrate::CHANGE, fuzzy_feedrate::SLOWEST],
     |setup, values| make::fuzzy_feedrate(setup, values)
 );
 
@@ -83,7 +74,7 @@ pub(crate) static FUZZY_H_INFINITY: Entry = controller!(
     "Tsai and others (1995); Shaked and Theodor (1992)",
     ExactModel,
     laps: 1,
-    [GAMMA_RATIO, DRIFT, FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
+    [h_infinity::GAMMA_RATIO, kalman_disturbance::DRIFT, fuzzy_feedrate::ERROR, fuzzy_feedrate::CHANGE, fuzzy_feedrate::SLOWEST],
     |setup, values| make::fuzzy_h_infinity(setup, values)
 );
 
@@ -94,7 +85,7 @@ pub(crate) static CROSS_COUPLED_FEEDRATE: Entry = controller!(
     "Chuang and Liu (1996)",
     Nothing,
     laps: 1,
-    [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+    [cross_coupled_feedrate::ALLOWED, cross_coupled_feedrate::FILTER, cross_coupled_feedrate::SLOWEST, cross_coupled::KP, cross_coupled::KI, cross_coupled::KD],
     |setup, values| make::cross_coupled_feedrate(setup, values)
 );
 
@@ -105,7 +96,7 @@ pub(crate) static CORNER_CONTOUR: Entry = controller!(
     "Yang (1993)",
     ExactModel,
     laps: 1,
-    [CORNER_REACH, VELOCITY_GAIN, ACCELERATION_GAIN],
+    [corner_contour::REACH, VELOCITY_GAIN, ACCELERATION_GAIN],
     |setup, values| make::corner_contour(setup, values)
 );
 
@@ -117,7 +108,7 @@ pub(crate) static CONSTRAINED_FEEDRATE: Entry = controller!(
     "Imamura and Kaufman (1989)",
     ExactModel,
     laps: 2,
-    [CONSTRAINED_ALLOWED, ALLOWED_SLOWEST],
+    [constrained_feedrate::ALLOWED, cross_coupled_feedrate::SLOWEST],
     |setup, values| make::constrained_feedrate(setup, values)
 );
 
@@ -140,7 +131,7 @@ pub(crate) static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
     "Masory (1986); Koren (1980); Koren and Lo (1992)",
     ExactModel,
     laps: 1,
-    [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND_KP, BEHIND_KI, BEHIND_KD],
+    [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, cross_coupled::BEHIND_KP, cross_coupled::BEHIND_KI, cross_coupled::BEHIND_KD],
     |setup, values| make::feedforward_cross_coupled(setup, values)
 );
 
@@ -151,7 +142,7 @@ pub(crate) static INPUT_SHAPING: Entry = controller!(
     "Singer and Seering (1990)",
     ExactModel,
     laps: 1,
-    [SHAPED_FREQUENCY, SHAPED_DAMPING, SHAPER_IMPULSES],
+    [input_shaping::FREQUENCY, input_shaping::DAMPING, input_shaping::IMPULSES],
     |setup, values| make::input_shaping(setup, values)
 );
 
@@ -162,7 +153,7 @@ pub(crate) static ZERO_PHASE: Entry = controller!(
     "Tomizuka (1987)",
     ExactModel,
     laps: 1,
-    [LAG_SCALE, INERTIA_SCALE],
+    [zero_phase::LAG_SCALE, zero_phase::INERTIA_SCALE],
     |setup, values| make::zero_phase(setup, values)
 );
 
@@ -173,7 +164,7 @@ pub(crate) static ZERO_PHASE_FRICTION: Entry = controller!(
     "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
     ExactModel,
     laps: 1,
-    [LAG_SCALE, INERTIA_SCALE, FRICTION_GAIN],
+    [zero_phase::LAG_SCALE, zero_phase::INERTIA_SCALE, FRICTION_GAIN],
     |setup, values| make::zero_phase_friction(setup, values)
 );
 
@@ -184,7 +175,7 @@ pub(crate) static DISTURBANCE_OBSERVER: Entry = controller!(
     "Ohnishi (1987)",
     ExactModel,
     laps: 1,
-    [OBSERVER_BANDWIDTH],
+    [disturbance_observer::BANDWIDTH],
     |setup, values| make::disturbance_observer(setup, values)
 );
 
@@ -196,7 +187,7 @@ pub(crate) static KALMAN_DISTURBANCE: Entry = controller!(
     "Erkorkmaz and Altintas (2001)",
     ExactModel,
     laps: 1,
-    [DRIFT, TORQUE_NOISE, FRICTION_GAIN],
+    [kalman_disturbance::DRIFT, kalman_disturbance::TORQUE_NOISE, FRICTION_GAIN],
     |setup, values| make::kalman_disturbance(setup, values)
 );
 
@@ -207,7 +198,7 @@ pub(crate) static MODEL_PREDICTIVE: Entry = controller!(
     "Lam, Manzie and Good (2010)",
     ExactModel,
     laps: 1,
-    [Parameter { searched: Some([1e-11, 1e-2]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
+    [model_predictive::RATE_WEIGHT, model_predictive::KNOTS, model_predictive::PLAN_PERIOD_S],
     |setup, values| make::model_predictive(setup, values)
 );
 
@@ -219,7 +210,7 @@ pub(crate) static LQG_PREVIEW: Entry = controller!(
     "Anderson and Moore (1990)",
     Everything,
     laps: 1,
-    [CONTROL_WEIGHT],
+    [make::CONTROL_WEIGHT],
     |setup, values| make::lqg_preview(setup, values)
 );
 

@@ -26,6 +26,7 @@ use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::Serialize;
 
 pub use recorded::RecordedValues;
+#[cfg(feature = "command")]
 pub(crate) use settings::range;
 pub use settings::{Setting, SettingError};
 pub use setup::{CutsUncorrected, ModelMisfit, Setup};

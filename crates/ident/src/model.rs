@@ -369,7 +369,7 @@ impl Model {
 
     /// The identifier of the contour error that it holds; none where it holds another, or for
     /// another number of axes.
-    pub fn contour<const N: usize>(&self) -> Option<ContourIdentifier<N>> {
+    fn contour<const N: usize>(&self) -> Option<ContourIdentifier<N>> {
         self.weights
             .fill()
             .filter(|_| self.is(IdentifierKind::Contour, N))

@@ -164,6 +164,7 @@ fn corrections(
 
 #[test]
 fn a_live_controller_commands_what_the_controller_of_run_commands() {
+    // The training of the paper's network takes most of the time.
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let choices = Choices::default();
     let axes = axes_model(&machine);

@@ -30,7 +30,9 @@
 //! the solver. The plan needs the whole path in advance, which one lap of practice records; nothing
 //! is measured in it.
 use feedwright_control::vector::{add_scaled, bounded, dot, norm, scale, sub};
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule, Window};
+
+use super::cross_coupled_feedrate;
 
 /// Plan time of a line, s: at 50 mm/s on a circle of 10 mm the path is 0.8 um beside the middle of
 /// such a line, in 10 ms 3 um.
@@ -111,6 +113,12 @@ impl Settings {
         acceleration_mm_s2: 100.0,
     };
 }
+
+pub(super) const ALLOWED: Parameter = Parameter {
+    default: Settings::DEFAULT.allowed_mm,
+    reason: "contour error that the plan allows by its linear model: a small one is slow everywhere, a large one changes nothing",
+    ..cross_coupled_feedrate::ALLOWED
+};
 
 /// The lines, and the rates at which they are cut.
 #[derive(Debug, Clone)]

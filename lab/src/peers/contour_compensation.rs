@@ -21,7 +21,7 @@
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Window, carried};
 
-use feedwright_control::{Command, Controller, Measured, Schedule};
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +40,21 @@ impl Settings {
         filter_s: 0.001,
     };
 }
+
+pub(super) const RATE: Parameter = Parameter::number(
+    "rate_1_s",
+    Settings::DEFAULT.rate_1_s,
+    [0.0, 1e4],
+    Some([1.0, 3000.0]),
+    "how fast the reference follows the error: small is late, large swings",
+);
+pub(super) const FILTER: Parameter = Parameter::number(
+    "filter_s",
+    Settings::DEFAULT.filter_s,
+    [1e-5, 10.0],
+    Some([1e-4, 0.1]),
+    "time constant of the filter on the error: long takes out noise, and is late",
+);
 
 /// Real-time contour error compensation.
 #[derive(Debug, Clone)]

@@ -22,12 +22,20 @@
 //! corner.
 use feedwright_control::vector::{dot, scale, smooth_step};
 use feedwright_control::{
-    Command, Controller, Feedforward, MAX_PREVIEW, Measured, Schedule, Window,
+    Command, Controller, Feedforward, MAX_PREVIEW, Measured, Parameter, Schedule, Window,
 };
 
 /// Cosine of the turn between two knots beyond which there is a corner between them: a curve turns
 /// so far (0.1 rad) in a servo period only where its radius is below ten steps.
 const CORNER_COSINE: f64 = 0.995;
+
+pub(super) const REACH: Parameter = Parameter::number(
+    "reach_s",
+    0.05,
+    [0.005, 0.1],
+    Some([0.005, 0.1]),
+    "time to either side of a corner in which the addition has its whole weight: a short one begins while the axis still lags",
+);
 
 /// The additional contour.
 #[derive(Debug, Clone)]

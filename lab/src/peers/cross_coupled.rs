@@ -29,7 +29,7 @@
 use feedwright_control::vector::{add_scaled, dot, norm, sub};
 use feedwright_control::{Window, carried};
 
-use feedwright_control::{Command, Controller, Measured, Schedule};
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
 /// Time constant of the filter of the derivative, s: two servo periods of 1 ms, below what a speed
 /// loop follows.
@@ -57,6 +57,44 @@ impl Settings {
         kd_s: 0.02,
     };
 }
+
+// Beyond the gains that the reasons name the loop is still stable on smooth paths, but catches the
+// tool in acute corners; what a machine can bear differs.
+pub(super) const KP: Parameter = Parameter::number(
+    "kp",
+    Settings::DEFAULT.kp,
+    [0.0, 100.0],
+    Some([0.1, 60.0]),
+    "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners",
+);
+pub(super) const KI: Parameter = Parameter::number(
+    "ki_1_s",
+    Settings::DEFAULT.ki_1_s,
+    [0.0, 1e5],
+    Some([0.1, 1e4]),
+    "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners",
+);
+pub(super) const KD: Parameter = Parameter::number(
+    "kd_s",
+    Settings::DEFAULT.kd_s,
+    [0.0, 1.0],
+    Some([1e-5, 0.5]),
+    "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners",
+);
+// The same behind a feedforward, which leaves a tenth of the error: on a noisy encoder next to no
+// gain may be best.
+pub(super) const BEHIND_KP: Parameter = Parameter {
+    searched: Some([0.01, 60.0]),
+    ..KP
+};
+pub(super) const BEHIND_KI: Parameter = Parameter {
+    searched: Some([0.01, 1e4]),
+    ..KI
+};
+pub(super) const BEHIND_KD: Parameter = Parameter {
+    searched: Some([1e-6, 0.5]),
+    ..KD
+};
 
 /// Cross-coupled control.
 #[derive(Debug, Clone)]

@@ -20,7 +20,7 @@
 //! the machine allows along the path.
 use feedwright_control::Window;
 use feedwright_control::vector::{bounded, norm};
-use feedwright_control::{Command, Controller, Measured, Schedule};
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
 use super::cross_coupled::CrossCoupled;
 use super::fuzzy_feedrate::eased;
@@ -49,6 +49,28 @@ impl Settings {
         acceleration_mm_s2: 100.0,
     };
 }
+
+pub(super) const ALLOWED: Parameter = Parameter::number(
+    "allowed_mm",
+    Settings::DEFAULT.allowed_mm,
+    [1e-5, 10.0],
+    Some([1e-4, 0.1]),
+    "contour error that is allowed: a small one slows down for every error, a large one for none",
+);
+pub(super) const FILTER: Parameter = Parameter::number(
+    "filter_s",
+    Settings::DEFAULT.filter_s,
+    [1e-4, 10.0],
+    Some([2e-3, 1.0]),
+    "time constant of the estimate of the error: short follows its noise, long is late at curves",
+);
+pub(super) const SLOWEST: Parameter = Parameter::number(
+    "slowest",
+    Settings::DEFAULT.slowest,
+    [0.1, 1.0],
+    Some([0.2, 1.0]),
+    "slowest it may run, as a part of the planned feedrate",
+);
 
 /// Cross-coupled control with an adaptive feedrate.
 #[derive(Debug, Clone)]

@@ -14,12 +14,21 @@
 //!
 //! Source: Ohnishi (1987), "A new servo method in mechatronics".
 
+use feedwright_control::Parameter;
+
 use super::zero_phase::SampledAxis;
 
 /// Bandwidth, Hz: above, encoder noise gets into the command, and the delay of a servo period makes
 /// the loop swing; below, friction lasts longer at every reversal (circle of 10 mm at 50 mm/s on
 /// tnv40, um RMS: 10 Hz 1.8, 25 Hz 1.1, 40 Hz 0.8).
-pub(super) const BANDWIDTH_HZ: f64 = 40.0;
+pub(super) const BANDWIDTH: Parameter = Parameter::number(
+    "bandwidth_hz",
+    40.0,
+    [0.0, 1000.0],
+    Some([1.0, 1000.0]),
+    "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
+     believes what it measures, and hardly changes",
+);
 
 /// Gains of the observer of an axis, for a bandwidth and a servo period of `servo_s`.
 pub(super) fn gains(axis: &SampledAxis, bandwidth_hz: f64, servo_s: f64) -> [f64; 3] {
@@ -48,7 +57,7 @@ mod tests {
     #[test]
     fn a_constant_disturbance_is_found_and_taken_out() {
         rejection::a_constant_disturbance_is_found_and_taken_out(|axis| {
-            gains(axis, BANDWIDTH_HZ, SERVO_S)
+            gains(axis, BANDWIDTH.default, SERVO_S)
         });
     }
 

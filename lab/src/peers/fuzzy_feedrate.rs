@@ -24,7 +24,7 @@
 use feedwright_control::Window;
 use feedwright_control::vector::{bounded, norm};
 
-use feedwright_control::{Command, Controller, Measured, Schedule};
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
 /// Period in which the rules are evaluated, s: the period of an interpolator, not of a servo.
 pub(super) const FEED_PERIOD_S: f64 = 0.01;
@@ -69,6 +69,28 @@ impl Settings {
         1.0 - (1.0 - self.slowest) * slow_down
     }
 }
+
+pub(super) const ERROR: Parameter = Parameter::number(
+    "error_mm",
+    Settings::DEFAULT.error_mm,
+    [1e-4, 10.0],
+    Some([0.002, 0.2]),
+    "contour error that counts as large: small slows down for every error, large for none",
+);
+pub(super) const CHANGE: Parameter = Parameter::number(
+    "change_mm_s",
+    Settings::DEFAULT.change_mm_s,
+    [1e-3, 1e3],
+    Some([0.05, 20.0]),
+    "change of the error that counts as large",
+);
+pub(super) const SLOWEST: Parameter = Parameter::number(
+    "slowest",
+    Settings::DEFAULT.slowest,
+    [0.05, 1.0],
+    Some([0.2, 1.0]),
+    "slowest it may run, as a part of the planned feedrate",
+);
 
 /// Degrees in which `x` belongs to the sets with their tops at -1, 0 and 1; their sum is 1.
 fn memberships(x: f64) -> [f64; 3] {

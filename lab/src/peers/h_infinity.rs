@@ -21,7 +21,7 @@
 //! fuzzy adaptive feedrate work together. Reconstructed here: the axis controller. The drive keeps
 //! its loops and takes positions, so the H-infinity part is the worst-case estimate of friction and
 //! load, which is removed from the command behind feedforward of velocity and acceleration.
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule, Window};
 
 use super::disturbance_rejection::DisturbanceRejection;
 use super::fuzzy_feedrate::FuzzyFeedrate;
@@ -34,8 +34,15 @@ const ITERATIONS: u32 = 4_000;
 /// Halvings of the interval of `ln gamma`, from no bound that matters to none that holds.
 const HALVINGS: u32 = 30;
 const GAMMAS: [f64; 2] = [1e-3, 1e6];
+
 /// Gamma as a multiple of the least.
-pub(super) const GAMMA_RATIO: f64 = 1.5;
+pub(super) const GAMMA_RATIO: Parameter = Parameter::number(
+    "gamma_ratio",
+    1.5,
+    [1.01, 100.0],
+    Some([1.01, 20.0]),
+    "worst case that is allowed, as a multiple of the least possible: near 1 the observer is fast and noisy, a large one is Kalman's",
+);
 
 /// Gains of the filter in its steady state, at a multiple of the least gamma; above 1.
 pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise, gamma_ratio: f64) -> [f64; 3] {
@@ -135,7 +142,7 @@ mod tests {
     #[test]
     fn a_constant_disturbance_is_found_and_taken_out() {
         rejection::a_constant_disturbance_is_found_and_taken_out(|axis| {
-            gains(axis, &AxisNoise::DEFAULT, GAMMA_RATIO)
+            gains(axis, &AxisNoise::DEFAULT, GAMMA_RATIO.default)
         });
     }
 

@@ -26,7 +26,9 @@
 use feedwright_control::vector::{add_scaled, sub};
 use feedwright_control::{Preview, Window};
 
-use feedwright_control::{Command, Controller, Feedforward, MAX_PREVIEW, Measured, Schedule};
+use feedwright_control::{
+    Command, Controller, Feedforward, MAX_PREVIEW, Measured, Parameter, Schedule,
+};
 
 /// Settings of the shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +51,27 @@ impl Settings {
         impulses: 2,
     };
 }
+
+pub(super) const FREQUENCY: Parameter = Parameter::number(
+    "frequency_hz",
+    Settings::DEFAULT.frequency_hz,
+    [5.0, 1000.0],
+    Some([10.0, 500.0]),
+    "of the resonance that is not excited: at 500 its impulses are a servo period apart, and shape nothing",
+);
+pub(super) const DAMPING: Parameter = Parameter::number(
+    "damping_ratio",
+    Settings::DEFAULT.damping_ratio,
+    [0.0, 0.9],
+    Some([1e-3, 0.5]),
+    "of that resonance: more makes the later impulses smaller",
+);
+pub(super) const IMPULSES: Parameter = Parameter::whole(
+    "impulses",
+    Settings::DEFAULT.impulses as usize,
+    [2.0, 3.0],
+    "2 hit the frequency (ZV), 3 also what is near it (ZVD) and round the path by more",
+);
 
 /// An impulse of the shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -23,6 +23,8 @@
 //! a loop of its own, and takes positions. The dynamics are compensated by `feedforward`, and the
 //! friction is smoothed Coulomb friction.
 
+use feedwright_control::Parameter;
+
 use super::zero_phase::SampledAxis;
 
 /// Iterations of the Riccati equation. The error falls by the square of the slowest pole each time:
@@ -52,6 +54,23 @@ impl AxisNoise {
         encoder_mm: 0.29e-3,
     };
 }
+
+// Only the ratios of the three noises count: in servo periods and against an encoder of 1 um.
+pub(super) const DRIFT: Parameter = Parameter::number(
+    "drift_mm_s",
+    AxisNoise::DEFAULT.drift_mm_s,
+    [1e-6, 1e4],
+    Some([1e-3, 1e4]),
+    "change of the disturbance: a small one is late at every reversal, a large one hands on the noise of the encoder; from 100 on \
+     the filter believes what it measures, and hardly changes",
+);
+pub(super) const TORQUE_NOISE: Parameter = Parameter::number(
+    "torque_noise_mm_s",
+    AxisNoise::DEFAULT.torque_mm_s,
+    [0.0, 100.0],
+    Some([1e-4, 10.0]),
+    "white part of the torque: what is put down to it is no disturbance",
+);
 
 /// Gains of the filter in its steady state.
 pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise) -> [f64; 3] {

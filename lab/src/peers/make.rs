@@ -4,15 +4,15 @@
 use feedwright::Setup;
 use feedwright_control::{
     ACCELERATION_GAIN, AxisInverse, AxisModel, AxisState, Controller, DriveParameters,
-    FRICTION_GAIN, Feedforward, Gains, LoopDelays, LqgIdentified, LqgSettings, Parameters,
-    VELOCITY_GAIN, Values,
+    FRICTION_GAIN, Feedforward, Gains, LoopDelays, LqgIdentified, LqgSettings, Parameter,
+    Parameters, VELOCITY_GAIN, Values,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
 
 use super::closed_loop;
 use super::constrained_feedrate::{self, ConstrainedFeedrate, LaggingAxis};
 use super::contour_compensation::{self, ContourCompensation};
-use super::corner_contour::CornerContour;
+use super::corner_contour::{self, CornerContour};
 use super::cross_coupled::{self, CrossCoupled};
 use super::cross_coupled_feedrate::{self, CrossCoupledFeedrate};
 use super::disturbance_observer;
@@ -24,15 +24,8 @@ use super::iterative_learning::{self, IterativeLearning};
 use super::kalman_disturbance::{self, AxisNoise};
 use super::model_predictive::horizon::{CorrectionLimits, HorizonSettings};
 use super::model_predictive::{self, ModelPredictive};
-use super::rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, COMPENSATION_FILTER, COMPENSATION_RATE,
-    CONSTRAINED_ALLOWED, CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI,
-    CROSS_COUPLED_KP, DRIFT, FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE,
-    KNOTS, LAG_SCALE, OBSERVER_BANDWIDTH, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING,
-    SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
-};
 use super::sum::Sum;
-use super::zero_phase::{Filter, SampledAxis, ZeroPhase};
+use super::zero_phase::{self, Filter, SampledAxis, ZeroPhase};
 
 pub(super) fn cross_coupled<const N: usize>(
     _: &mut Setup<'_>,
@@ -44,9 +37,9 @@ pub(super) fn cross_coupled<const N: usize>(
 /// Cross-coupled control of these gains.
 fn pid<const N: usize>(values: Values<'_>) -> CrossCoupled<N> {
     CrossCoupled::new(cross_coupled::Settings {
-        kp: values(&CROSS_COUPLED_KP),
-        ki_1_s: values(&CROSS_COUPLED_KI),
-        kd_s: values(&CROSS_COUPLED_KD),
+        kp: values(&cross_coupled::KP),
+        ki_1_s: values(&cross_coupled::KI),
+        kd_s: values(&cross_coupled::KD),
     })
 }
 
@@ -55,9 +48,9 @@ pub(super) fn cross_coupled_feedrate<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = cross_coupled_feedrate::Settings {
-        allowed_mm: values(&ALLOWED),
-        filter_s: values(&ALLOWED_FILTER),
-        slowest: values(&ALLOWED_SLOWEST),
+        allowed_mm: values(&cross_coupled_feedrate::ALLOWED),
+        filter_s: values(&cross_coupled_feedrate::FILTER),
+        slowest: values(&cross_coupled_feedrate::SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
     Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(values)))
@@ -68,8 +61,8 @@ pub(super) fn contour_compensation<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = contour_compensation::Settings {
-        rate_1_s: values(&COMPENSATION_RATE),
-        filter_s: values(&COMPENSATION_FILTER),
+        rate_1_s: values(&contour_compensation::RATE),
+        filter_s: values(&contour_compensation::FILTER),
     };
     Box::new(ContourCompensation::new(settings))
 }
@@ -87,9 +80,9 @@ fn fuzzy(setup: &Setup<'_>, values: Values<'_>) -> FuzzyFeedrate {
             .known
             .period
             .servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
-        error_mm: values(&FUZZY_ERROR),
-        change_mm_s: values(&FUZZY_CHANGE),
-        slowest: values(&FUZZY_SLOWEST),
+        error_mm: values(&fuzzy_feedrate::ERROR),
+        change_mm_s: values(&fuzzy_feedrate::CHANGE),
+        slowest: values(&fuzzy_feedrate::SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     })
 }
@@ -99,10 +92,10 @@ pub(super) fn fuzzy_h_infinity<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let noise = AxisNoise {
-        drift_mm_s: values(&DRIFT),
+        drift_mm_s: values(&kalman_disturbance::DRIFT),
         ..AxisNoise::DEFAULT
     };
-    let gamma_ratio = values(&GAMMA_RATIO);
+    let gamma_ratio = values(&h_infinity::GAMMA_RATIO);
     let feedforward = feedforward_with::<N>(
         setup,
         Gains {
@@ -132,7 +125,7 @@ pub(super) fn corner_contour<const N: usize>(
     );
     Box::new(CornerContour::new(
         inverse,
-        values(&CORNER_REACH),
+        values(&corner_contour::REACH),
         setup.known.period.servo_s,
     ))
 }
@@ -146,8 +139,8 @@ pub(super) fn constrained_feedrate<const N: usize>(
             .known
             .period
             .servo_periods(constrained_feedrate::LINE_S),
-        allowed_mm: values(&CONSTRAINED_ALLOWED),
-        slowest: values(&ALLOWED_SLOWEST),
+        allowed_mm: values(&constrained_feedrate::ALLOWED),
+        slowest: values(&cross_coupled_feedrate::SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
     let axes = setup.known.axes().map(|KnownAxis { nominal, drive, .. }| {
@@ -225,9 +218,9 @@ pub(super) fn input_shaping<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = input_shaping::Settings {
-        frequency_hz: values(&SHAPED_FREQUENCY),
-        damping_ratio: values(&SHAPED_DAMPING),
-        impulses: values(&SHAPER_IMPULSES) as u32,
+        frequency_hz: values(&input_shaping::FREQUENCY),
+        damping_ratio: values(&input_shaping::DAMPING),
+        impulses: values(&input_shaping::IMPULSES) as u32,
     };
     let feedforward = feedforward_with::<N>(setup, Gains::EXACT);
     Box::new(InputShaping::new(
@@ -262,7 +255,8 @@ pub(super) fn zero_phase_friction<const N: usize>(
 /// The inverse of the closed loop, with scales on its lag and its inertia.
 fn inverse<const N: usize>(setup: &Setup<'_>, values: Values<'_>) -> ZeroPhase<N> {
     let (known, servo_s) = (&setup.known, setup.known.period.servo_s);
-    let [lag_scale, inertia_scale] = [LAG_SCALE, INERTIA_SCALE].map(|scale| values(&scale));
+    let [lag_scale, inertia_scale] =
+        [zero_phase::LAG_SCALE, zero_phase::INERTIA_SCALE].map(|scale| values(&scale));
     let plain: [SampledAxis; N] = sampled_axes(known, [lag_scale, inertia_scale]);
     let filters = std::array::from_fn(|i| {
         let axis = known.axis(i);
@@ -306,7 +300,10 @@ pub(super) fn disturbance_observer<const N: usize>(
     setup: &mut Setup<'_>,
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
-    let (bandwidth_hz, servo_s) = (values(&OBSERVER_BANDWIDTH), setup.known.period.servo_s);
+    let (bandwidth_hz, servo_s) = (
+        values(&disturbance_observer::BANDWIDTH),
+        setup.known.period.servo_s,
+    );
     let feedforward = feedforward_with::<N>(
         setup,
         Gains {
@@ -327,8 +324,8 @@ pub(super) fn kalman_disturbance<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let noise = AxisNoise {
-        drift_mm_s: values(&DRIFT),
-        torque_mm_s: values(&TORQUE_NOISE),
+        drift_mm_s: values(&kalman_disturbance::DRIFT),
+        torque_mm_s: values(&kalman_disturbance::TORQUE_NOISE),
         ..AxisNoise::DEFAULT
     };
     let feedforward = feedforward_with::<N>(
@@ -417,9 +414,15 @@ pub(super) fn model_predictive<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let mut horizon = HorizonSettings::<N>::DEFAULT;
-    (horizon.knots, horizon.rate_weight) = (values(&KNOTS) as usize, values(&RATE_WEIGHT));
+    (horizon.knots, horizon.rate_weight) = (
+        values(&model_predictive::KNOTS) as usize,
+        values(&model_predictive::RATE_WEIGHT),
+    );
     horizon.limits = CorrectionLimits::of(&setup.known);
-    let servo_periods = setup.known.period.servo_periods(values(&PLAN_PERIOD_S));
+    let servo_periods = setup
+        .known
+        .period
+        .servo_periods(values(&model_predictive::PLAN_PERIOD_S));
     Box::new(ModelPredictive::new(
         &setup.known,
         model_predictive::Settings {
@@ -428,6 +431,14 @@ pub(super) fn model_predictive<const N: usize>(
         },
     ))
 }
+
+pub(super) const CONTROL_WEIGHT: Parameter = Parameter::number(
+    "control_weight_s2",
+    LqgSettings::DEFAULT.control_weight_s2,
+    [1e-12, 1e-2],
+    Some([1e-11, 1e-3]),
+    "weight of the reference speed against the error, s^2: a low one rings between servo periods, a high one leaves the error",
+);
 
 pub(super) fn lqg_preview<const N: usize>(
     setup: &mut Setup<'_>,

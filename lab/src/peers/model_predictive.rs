@@ -19,8 +19,8 @@ pub(crate) mod horizon;
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
     AxisModel, AxisState, Command, CommandQueue, Controller, DriveModel, DriveParameters,
-    DriveReference, DriveState, FrictionModel, FrictionParameters, Measured, Parameters, Schedule,
-    SelfReport, Window, friction_signs,
+    DriveReference, DriveState, FrictionModel, FrictionParameters, Measured, Parameter, Parameters,
+    Schedule, SelfReport, Window, friction_signs,
 };
 use feedwright_sim::{Known, KnownAxis};
 
@@ -41,6 +41,27 @@ pub(crate) struct Settings<const N: usize> {
     /// The inversion.
     pub horizon: HorizonSettings<N>,
 }
+
+pub(super) const RATE_WEIGHT: Parameter = Parameter::number(
+    "rate_weight_s2",
+    HorizonSettings::<2>::DEFAULT.rate_weight,
+    [0.0, 0.01],
+    Some([1e-11, 1e-2]),
+    "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
+);
+pub(super) const KNOTS: Parameter = Parameter::whole(
+    "knots",
+    HorizonSettings::<2>::DEFAULT.knots,
+    [1.0, MAX_KNOTS as f64],
+    "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
+);
+pub(super) const PLAN_PERIOD_S: Parameter = Parameter::number(
+    "feed_period_s",
+    0.003,
+    [1e-3, 0.012],
+    None,
+    "time between decisions: 2 ms is worse on a soft ball screw, 5 ms at every reversal",
+);
 
 /// Model-predictive contouring.
 #[derive(Debug, Clone)]

@@ -35,7 +35,9 @@
 use feedwright_control::Window;
 use feedwright_control::vector::add_scaled;
 
-use feedwright_control::{Command, Controller, MAX_PREVIEW, Measured, Schedule, preview};
+use feedwright_control::{
+    Command, Controller, MAX_PREVIEW, Measured, Parameter, Schedule, preview,
+};
 
 /// One axis between two servo periods: the effect of its speed and of the reference speed that is
 /// held.
@@ -61,6 +63,23 @@ pub(super) const MAX_WEIGHTS: usize = 64;
 /// Most zeros that are cancelled: three of a sampled drive with integral and filter, one of a part
 /// of a period of delay, two of feedforward.
 pub(super) const MAX_CANCELLED: usize = 6;
+
+pub(super) const LAG_SCALE: Parameter = Parameter::number(
+    "lag_scale",
+    1.0,
+    [0.01, 10.0],
+    Some([0.1, 1.5]),
+    EXACT_REASON,
+);
+pub(super) const INERTIA_SCALE: Parameter = Parameter::number(
+    "inertia_scale",
+    1.0,
+    [0.01, 10.0],
+    Some([0.2, 3.0]),
+    EXACT_REASON,
+);
+const EXACT_REASON: &str =
+    "1 is what the exact model calls for; another makes up for a model that is not exact";
 
 /// The filter of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
