@@ -32,249 +32,121 @@ mod rows;
 
 use feedwright::{
     ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, LQG_IDENTIFIED,
-    MAGNITUDE_ONLY, Parameter, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
+    MAGNITUDE_ONLY, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
 };
 use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CONSTRAINED_ALLOWED,
-    CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT,
-    FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE,
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BANDWIDTH, BEHIND, COMPENSATION_FILTER,
+    COMPENSATION_RATE, CONSTRAINED_ALLOWED, CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD,
+    CROSS_COUPLED_KI, CROSS_COUPLED_KP, CUT_OFF_HZ, DRIFT, FUZZY_CHANGE, FUZZY_ERROR,
+    FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE, LEAD_S, LEARNING_GAIN,
     PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
 };
 
-/// PID control of the contour error, added to the command across the path.
-pub(crate) static CROSS_COUPLED: Entry = controller!(
-    "cross-coupled",
-    "PID control of the contour error, added to the command across the path",
-    "Koren (1980); Srinivasan and Kulkarni (1990)",
-    Nothing,
-    laps: 1,
-    [CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
-    |setup, values| make::cross_coupled(setup, values)
-);
+/// Rows: name, summary, source, what it knows, laps, parameters, and how it is made.
+macro_rules! peers {
+    ($($row:ident = $name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),+], $make:path;)+) => {
+        $(pub(crate) static $row: Entry =
+            controller!($name, $summary, $source, $knows, laps: $laps, [$($parameter),+], |setup, values| $make(setup, values));)+
+    };
+}
 
-/// The reference moved by the estimated contour error.
-pub(crate) static CONTOUR_COMPENSATION: Entry = controller!(
-    "contour-compensation",
-    "the reference moved by the estimated contour error",
-    "Lee and Jeon (1999)",
-    Nothing,
-    laps: 1,
-    [
-        Parameter::number(
-            "rate_1_s",
-            contour_compensation::Settings::DEFAULT.rate_1_s,
-            [0.0, 1e4],
-            Some([1.0, 3000.0]),
-            "how fast the reference follows the error: small is late, large swings"
-        ),
-        Parameter::number(
-            "filter_s",
-            contour_compensation::Settings::DEFAULT.filter_s,
-            [1e-5, 10.0],
-            Some([1e-4, 0.1]),
-            "time constant of the filter on the error: long takes out noise, and is late"
-        )
-    ],
-    |setup, values| make::contour_compensation(setup, values)
-);
-
-/// Fuzzy rules on the contour error and its change, speed along the path only.
-pub(crate) static FUZZY_FEEDRATE: Entry = controller!(
-    "fuzzy-feedrate",
-    "fuzzy rules on the contour error and its change, speed along the path only",
-    "Tsai and others (1995), the feedrate alone",
-    Nothing,
-    laps: 1,
-    [FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
-    |setup, values| make::fuzzy_feedrate(setup, values)
-);
-
-/// H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate.
-pub(crate) static FUZZY_H_INFINITY: Entry = controller!(
-    "fuzzy-h-infinity",
-    "H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate",
-    "Tsai and others (1995); Shaked and Theodor (1992)",
-    ExactModel,
-    laps: 1,
-    [GAMMA_RATIO, DRIFT, FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
-    |setup, values| make::fuzzy_h_infinity(setup, values)
-);
-
-/// PID control of the contour error, and a feedrate that keeps it within what is allowed.
-pub(crate) static CROSS_COUPLED_FEEDRATE: Entry = controller!(
-    "cross-coupled-feedrate",
-    "PID control of the contour error, and a feedrate that keeps it within what is allowed",
-    "Chuang and Liu (1996)",
-    Nothing,
-    laps: 1,
-    [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
-    |setup, values| make::cross_coupled_feedrate(setup, values)
-);
-
-/// An additional reference contour at corners, from linear models of the axes.
-pub(crate) static CORNER_CONTOUR: Entry = controller!(
-    "corner-contour",
-    "an additional reference contour at corners, from linear models of the axes",
-    "Yang (1993)",
-    ExactModel,
-    laps: 1,
-    [CORNER_REACH, VELOCITY_GAIN, ACCELERATION_GAIN],
-    |setup, values| make::corner_contour(setup, values)
-);
-
-/// The feedrate of least time with a bounded contour error, by nonlinear programming on linear
-/// models of the axes.
-pub(crate) static CONSTRAINED_FEEDRATE: Entry = controller!(
-    "constrained-feedrate",
-    "the feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes",
-    "Imamura and Kaufman (1989)",
-    ExactModel,
-    laps: 2,
-    [CONSTRAINED_ALLOWED, ALLOWED_SLOWEST],
-    |setup, values| make::constrained_feedrate(setup, values)
-);
-
-/// Velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of
-/// friction.
-pub(crate) static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
-    "feedforward-as-delivered",
-    "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
-    "Masory (1986); FF1 and FF2 of LinuxCNC",
-    ExactModel,
-    laps: 1,
-    [VELOCITY_GAIN, ACCELERATION_GAIN],
-    |setup, values| make::feedforward_as_delivered(setup, values)
-);
-
-/// Velocity, acceleration and friction feedforward, and PID control of the contour error behind it.
-pub(crate) static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
-    "feedforward-cross-coupled",
-    "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
-    "Masory (1986); Koren (1980); Koren and Lo (1992)",
-    ExactModel,
-    laps: 1,
-    [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND_KP, BEHIND_KI, BEHIND_KD],
-    |setup, values| make::feedforward_cross_coupled(setup, values)
-);
-
-/// The path shaped so that a resonance is not excited, and feedforward of it with the exact model.
-pub(crate) static INPUT_SHAPING: Entry = controller!(
-    "input-shaping",
-    "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
-    "Singer and Seering (1990)",
-    ExactModel,
-    laps: 1,
-    [SHAPED_FREQUENCY, SHAPED_DAMPING, SHAPER_IMPULSES],
-    |setup, values| make::input_shaping(setup, values)
-);
-
-/// Zero phase error tracking control with the linear model of the machine.
-pub(crate) static ZERO_PHASE: Entry = controller!(
-    "zero-phase",
-    "zero phase error tracking control with the linear model of the machine",
-    "Tomizuka (1987)",
-    ExactModel,
-    laps: 1,
-    [LAG_SCALE, INERTIA_SCALE],
-    |setup, values| make::zero_phase(setup, values)
-);
-
-/// Zero phase error tracking control, and feedforward of the Coulomb friction.
-pub(crate) static ZERO_PHASE_FRICTION: Entry = controller!(
-    "zero-phase-friction",
-    "zero phase error tracking control, and feedforward of the Coulomb friction",
-    "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
-    ExactModel,
-    laps: 1,
-    [LAG_SCALE, INERTIA_SCALE, FRICTION_GAIN],
-    |setup, values| make::zero_phase_friction(setup, values)
-);
-
-/// Velocity and acceleration feedforward, and an observer of friction and cutting force.
-pub(crate) static DISTURBANCE_OBSERVER: Entry = controller!(
-    "disturbance-observer",
-    "velocity and acceleration feedforward, and an observer of friction and cutting force",
-    "Ohnishi (1987)",
-    ExactModel,
-    laps: 1,
-    [Parameter::number(
-        "bandwidth_hz",
-        disturbance_observer::BANDWIDTH_HZ,
-        [0.0, 1000.0],
-        Some([1.0, 1000.0]),
-        "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
-         believes what it measures, and hardly changes"
-    )],
-    |setup, values| make::disturbance_observer(setup, values)
-);
-
-/// Velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken
-/// out.
-pub(crate) static KALMAN_DISTURBANCE: Entry = controller!(
-    "kalman-disturbance",
-    "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
-    "Erkorkmaz and Altintas (2001)",
-    ExactModel,
-    laps: 1,
-    [DRIFT, TORQUE_NOISE, FRICTION_GAIN],
-    |setup, values| make::kalman_disturbance(setup, values)
-);
-
-/// Contouring over 20 knots ahead with the exact model of the machine, solved to convergence.
-pub(crate) static MODEL_PREDICTIVE: Entry = controller!(
-    "model-predictive",
-    "contouring over 20 knots ahead with the exact model of the machine, solved to convergence",
-    "Lam, Manzie and Good (2010)",
-    ExactModel,
-    laps: 1,
-    [Parameter { searched: Some([1e-11, 1e-2]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
-    |setup, values| make::model_predictive(setup, values)
-);
-
-/// The limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be
-/// known of the machine.
-pub(crate) static LQG_PREVIEW: Entry = controller!(
-    "lqg-preview",
-    "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
-    "Anderson and Moore (1990)",
-    Everything,
-    laps: 1,
-    [CONTROL_WEIGHT],
-    |setup, values| make::lqg_preview(setup, values)
-);
-
-/// Offsets learned from the contour error of the same part, 1 lap of practice.
-pub(crate) static ITERATIVE_LEARNING_1: Entry = controller!(
-    "iterative-learning-1",
-    "offsets learned from the contour error of the same part, 1 lap of practice",
-    "Arimoto, Kawamura and Miyazaki (1984)",
-    EarlierLaps,
-    laps: 2,
-    iterative_learning::PARAMETERS,
-    |setup, values| make::iterative_learning(setup, values)
-);
-
-/// Offsets learned from the contour error of the same part, 3 laps of practice.
-pub(crate) static ITERATIVE_LEARNING_3: Entry = controller!(
-    "iterative-learning-3",
-    "offsets learned from the contour error of the same part, 3 laps of practice",
-    "Arimoto, Kawamura and Miyazaki (1984)",
-    EarlierLaps,
-    laps: 4,
-    iterative_learning::PARAMETERS,
-    |setup, values| make::iterative_learning(setup, values)
-);
-
-/// Offsets learned from the contour error of the same part, 10 laps of practice.
-pub(crate) static ITERATIVE_LEARNING_10: Entry = controller!(
-    "iterative-learning-10",
-    "offsets learned from the contour error of the same part, 10 laps of practice",
-    "Arimoto, Kawamura and Miyazaki (1984)",
-    EarlierLaps,
-    laps: 11,
-    iterative_learning::PARAMETERS,
-    |setup, values| make::iterative_learning(setup, values)
-);
+peers! {
+    CROSS_COUPLED = "cross-coupled",
+        "PID control of the contour error, added to the command across the path",
+        "Koren (1980); Srinivasan and Kulkarni (1990)",
+        Nothing, laps: 1, [CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+        make::cross_coupled;
+    CONTOUR_COMPENSATION = "contour-compensation",
+        "the reference moved by the estimated contour error",
+        "Lee and Jeon (1999)",
+        Nothing, laps: 1, [COMPENSATION_RATE, COMPENSATION_FILTER],
+        make::contour_compensation;
+    FUZZY_FEEDRATE = "fuzzy-feedrate",
+        "fuzzy rules on the contour error and its change, speed along the path only",
+        "Tsai and others (1995), the feedrate alone",
+        Nothing, laps: 1, [FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
+        make::fuzzy_feedrate;
+    FUZZY_H_INFINITY = "fuzzy-h-infinity",
+        "H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate",
+        "Tsai and others (1995); Shaked and Theodor (1992)",
+        ExactModel, laps: 1, [GAMMA_RATIO, DRIFT, FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
+        make::fuzzy_h_infinity;
+    CROSS_COUPLED_FEEDRATE = "cross-coupled-feedrate",
+        "PID control of the contour error, and a feedrate that keeps it within what is allowed",
+        "Chuang and Liu (1996)",
+        Nothing, laps: 1, [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+        make::cross_coupled_feedrate;
+    CORNER_CONTOUR = "corner-contour",
+        "an additional reference contour at corners, from linear models of the axes",
+        "Yang (1993)",
+        ExactModel, laps: 1, [CORNER_REACH, VELOCITY_GAIN, ACCELERATION_GAIN],
+        make::corner_contour;
+    CONSTRAINED_FEEDRATE = "constrained-feedrate",
+        "the feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes",
+        "Imamura and Kaufman (1989)",
+        ExactModel, laps: 2, [CONSTRAINED_ALLOWED, ALLOWED_SLOWEST],
+        make::constrained_feedrate;
+    FEEDFORWARD_AS_DELIVERED = "feedforward-as-delivered",
+        "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
+        "Masory (1986); FF1 and FF2 of LinuxCNC",
+        ExactModel, laps: 1, [VELOCITY_GAIN, ACCELERATION_GAIN],
+        make::feedforward_as_delivered;
+    FEEDFORWARD_CROSS_COUPLED = "feedforward-cross-coupled",
+        "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
+        "Masory (1986); Koren (1980); Koren and Lo (1992)",
+        ExactModel, laps: 1, [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND[0], BEHIND[1], BEHIND[2]],
+        make::feedforward_cross_coupled;
+    INPUT_SHAPING = "input-shaping",
+        "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
+        "Singer and Seering (1990)",
+        ExactModel, laps: 1, [SHAPED_FREQUENCY, SHAPED_DAMPING, SHAPER_IMPULSES],
+        make::input_shaping;
+    ZERO_PHASE = "zero-phase",
+        "zero phase error tracking control with the linear model of the machine",
+        "Tomizuka (1987)",
+        ExactModel, laps: 1, [LAG_SCALE, INERTIA_SCALE],
+        make::zero_phase;
+    ZERO_PHASE_FRICTION = "zero-phase-friction",
+        "zero phase error tracking control, and feedforward of the Coulomb friction",
+        "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+        ExactModel, laps: 1, [LAG_SCALE, INERTIA_SCALE, FRICTION_GAIN],
+        make::zero_phase_friction;
+    DISTURBANCE_OBSERVER = "disturbance-observer",
+        "velocity and acceleration feedforward, and an observer of friction and cutting force",
+        "Ohnishi (1987)",
+        ExactModel, laps: 1, [BANDWIDTH],
+        make::disturbance_observer;
+    KALMAN_DISTURBANCE = "kalman-disturbance",
+        "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
+        "Erkorkmaz and Altintas (2001)",
+        ExactModel, laps: 1, [DRIFT, TORQUE_NOISE, FRICTION_GAIN],
+        make::kalman_disturbance;
+    MODEL_PREDICTIVE = "model-predictive",
+        "contouring over 20 knots ahead with the exact model of the machine, solved to convergence",
+        "Lam, Manzie and Good (2010)",
+        ExactModel, laps: 1, [RATE_WEIGHT, KNOTS, PLAN_PERIOD_S],
+        make::model_predictive;
+    LQG_PREVIEW = "lqg-preview",
+        "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
+        "Anderson and Moore (1990)",
+        Everything, laps: 1, [CONTROL_WEIGHT],
+        make::lqg_preview;
+    ITERATIVE_LEARNING_1 = "iterative-learning-1",
+        "offsets learned from the contour error of the same part, 1 lap of practice",
+        "Arimoto, Kawamura and Miyazaki (1984)",
+        EarlierLaps, laps: 2, [LEARNING_GAIN, LEAD_S, CUT_OFF_HZ],
+        make::iterative_learning;
+    ITERATIVE_LEARNING_3 = "iterative-learning-3",
+        "offsets learned from the contour error of the same part, 3 laps of practice",
+        "Arimoto, Kawamura and Miyazaki (1984)",
+        EarlierLaps, laps: 4, [LEARNING_GAIN, LEAD_S, CUT_OFF_HZ],
+        make::iterative_learning;
+    ITERATIVE_LEARNING_10 = "iterative-learning-10",
+        "offsets learned from the contour error of the same part, 10 laps of practice",
+        "Arimoto, Kawamura and Miyazaki (1984)",
+        EarlierLaps, laps: 11, [LEARNING_GAIN, LEAD_S, CUT_OFF_HZ],
+        make::iterative_learning;
+}
 
 /// All controllers: those that a machine runs, and the peers.
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS, RECORDED);

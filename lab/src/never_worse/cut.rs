@@ -316,10 +316,7 @@ mod tests {
     #[test]
     fn a_circle_is_cut_better_with_the_controllers_than_without() {
         let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
-        let length = Length {
-            machine: &machine,
-            limit_s: 10.0,
-        };
+        let length = Length(&machine, 10.0);
         let program = SweepProgram::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length)
             .expect("a program");
         let best = CONTROLLERS.find(BEST).expect("in the table");

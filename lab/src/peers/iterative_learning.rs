@@ -25,35 +25,6 @@
 use feedwright_control::vector::{add_scaled, norm};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-use feedwright::Parameter;
-
-/// Part of the error that a lap takes up.
-const GAIN: Parameter = Parameter::number(
-    "gain",
-    Settings::DEFAULT.gain,
-    [0.0, 2.0],
-    Some([0.1, 1.9]),
-    "part of the error that a lap takes up: 0 learns nothing, 2 swings from lap to lap",
-);
-/// Time by which an offset comes before the error that it is for.
-const LEAD_S: Parameter = Parameter::number(
-    "lead_s",
-    Settings::DEFAULT.lead_s,
-    [0.0, 0.5],
-    Some([2e-4, 0.05]),
-    "time by which an offset comes before the error that it is for: the lag of the loop",
-);
-/// Cut-off of Q.
-const CUT_OFF_HZ: Parameter = Parameter::number(
-    "cut-off_hz",
-    Settings::DEFAULT.cut_off_hz,
-    [0.1, 1e4],
-    Some([2.0, 400.0]),
-    "frequency above which nothing is learned: beyond the bandwidth of the loop, learning grows noise",
-);
-/// Parameters of every row, whatever its laps.
-pub(super) const PARAMETERS: [Parameter; 3] = [GAIN, LEAD_S, CUT_OFF_HZ];
-
 /// The end of a program is followed until the tool has arrived; its errors are learned for as long,
 /// s.
 const ARRIVAL_S: f64 = 0.25;

@@ -26,121 +26,91 @@ use super::model_predictive::{self, ModelPredictive};
 use super::sum::Sum;
 use super::zero_phase::{Filter, SampledAxis, ZeroPhase};
 
-pub(super) fn cross_coupled<const N: usize>(
-    _: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
-    Box::new(pid::<N>(values))
+/// A controller of a row.
+type Boxed<const N: usize> = Box<dyn Controller<N>>;
+
+pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, v: &Values) -> Boxed<N> {
+    Box::new(pid::<N>(v))
 }
 
 /// Cross-coupled control of these gains.
-fn pid<const N: usize>(values: &Values) -> CrossCoupled<N> {
+fn pid<const N: usize>(v: &Values) -> CrossCoupled<N> {
     CrossCoupled::new(cross_coupled::Settings {
-        kp: values.number("kp"),
-        ki_1_s: values.number("ki_1_s"),
-        kd_s: values.number("kd_s"),
+        kp: v.number("kp"),
+        ki_1_s: v.number("ki_1_s"),
+        kd_s: v.number("kd_s"),
     })
 }
 
 pub(super) fn cross_coupled_feedrate<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+    v: &Values,
+) -> Boxed<N> {
     let settings = cross_coupled_feedrate::Settings {
-        allowed_mm: values.number("allowed_mm"),
-        filter_s: values.number("filter_s"),
-        slowest: values.number("slowest"),
+        allowed_mm: v.number("allowed_mm"),
+        filter_s: v.number("filter_s"),
+        slowest: v.number("slowest"),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
-    Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(values)))
+    Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(v)))
 }
 
-pub(super) fn contour_compensation<const N: usize>(
-    _: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let settings = contour_compensation::Settings {
-        rate_1_s: values.number("rate_1_s"),
-        filter_s: values.number("filter_s"),
+        rate_1_s: v.number("rate_1_s"),
+        filter_s: v.number("filter_s"),
     };
     Box::new(ContourCompensation::new(settings))
 }
 
-pub(super) fn fuzzy_feedrate<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
-    Box::new(fuzzy(setup, values))
+pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
+    Box::new(fuzzy(setup, v))
 }
 
-fn fuzzy(setup: &Setup<'_>, values: &Values) -> FuzzyFeedrate {
+fn fuzzy(setup: &Setup<'_>, v: &Values) -> FuzzyFeedrate {
     FuzzyFeedrate::new(fuzzy_feedrate::Settings {
         servo_periods: setup
             .known
             .period
             .servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
-        error_mm: values.number("error_mm"),
-        change_mm_s: values.number("change_mm_s"),
-        slowest: values.number("slowest"),
+        error_mm: v.number("error_mm"),
+        change_mm_s: v.number("change_mm_s"),
+        slowest: v.number("slowest"),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     })
 }
 
-pub(super) fn fuzzy_h_infinity<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn fuzzy_h_infinity<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let noise = AxisNoise {
-        drift_mm_s: values.number("drift_mm_s"),
+        drift_mm_s: v.number("drift_mm_s"),
         ..AxisNoise::DEFAULT
     };
-    let gamma_ratio = values.number("gamma_ratio");
-    let feedforward = feedforward_with::<N>(
-        setup,
-        Gains {
-            friction: 0.0,
-            ..Gains::EXACT
-        },
-    );
+    let gamma_ratio = v.number("gamma_ratio");
+    let feedforward = feedforward_with::<N>(setup, WITHOUT_FRICTION);
     let axes = observed_axes(&setup.known, |axis| {
         h_infinity::gains(axis, &noise, gamma_ratio)
     });
     let rejection = DisturbanceRejection::new(feedforward, axes, setup.known.period.servo_s);
-    Box::new(FuzzyHInfinity::new(rejection, fuzzy(setup, values)))
+    Box::new(FuzzyHInfinity::new(rejection, fuzzy(setup, v)))
 }
 
-pub(super) fn corner_contour<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
-    let [velocity, acceleration] =
-        ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
-    let inverse = feedforward_with::<N>(
-        setup,
-        Gains {
-            velocity,
-            acceleration,
-            friction: 0.0,
-        },
-    );
+pub(super) fn corner_contour<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
+    let inverse = feedforward_with::<N>(setup, linear_gains(v));
     Box::new(CornerContour::new(
         inverse,
-        values.number("reach_s"),
+        v.number("reach_s"),
         setup.known.period.servo_s,
     ))
 }
 
-pub(super) fn constrained_feedrate<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn constrained_feedrate<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let settings = constrained_feedrate::Settings {
         servo_periods: setup
             .known
             .period
             .servo_periods(constrained_feedrate::LINE_S),
-        allowed_mm: values.number("allowed_mm"),
-        slowest: values.number("slowest"),
+        allowed_mm: v.number("allowed_mm"),
+        slowest: v.number("slowest"),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
     let axes = setup.known.axes().map(|KnownAxis { nominal, drive, .. }| {
@@ -159,18 +129,28 @@ pub(super) fn constrained_feedrate<const N: usize>(
     ))
 }
 
+/// Gains of velocity and acceleration.
+fn linear_gains(v: &Values) -> Gains {
+    Gains {
+        velocity: v.number("velocity_gain"),
+        acceleration: v.number("acceleration_gain"),
+        friction: 0.0,
+    }
+}
+
+/// Feedforward of the linear part of the model.
+const WITHOUT_FRICTION: Gains = Gains {
+    friction: 0.0,
+    ..Gains::EXACT
+};
+
 /// Feedforward of all three parts, by their gains.
-fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
-    let [velocity, acceleration, friction] =
-        ["velocity_gain", "acceleration_gain", "friction_gain"].map(|name| values.number(name));
-    feedforward_with(
-        setup,
-        Gains {
-            velocity,
-            acceleration,
-            friction,
-        },
-    )
+fn full_feedforward<const N: usize>(setup: &Setup<'_>, v: &Values) -> Feedforward<N> {
+    let gains = Gains {
+        friction: v.number("friction_gain"),
+        ..linear_gains(v)
+    };
+    feedforward_with(setup, gains)
 }
 
 /// The part of it that controls have as they are delivered: it is set by the inertia and the gains
@@ -178,10 +158,8 @@ fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedf
 /// was delivered with that, and gets no more: there this is uncorrected.
 pub(super) fn feedforward_as_delivered<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
-    let [velocity, acceleration] =
-        ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    v: &Values,
+) -> Boxed<N> {
     let axes = setup.known.axis_model().map(AxisInverse::plain);
     let gains = setup.known.axes::<N>().map(|KnownAxis { drive, .. }| {
         let feeds_forward =
@@ -189,11 +167,7 @@ pub(super) fn feedforward_as_delivered<const N: usize>(
         if feeds_forward {
             Gains::NONE
         } else {
-            Gains {
-                velocity,
-                acceleration,
-                friction: 0.0,
-            }
+            linear_gains(v)
         }
     });
     Box::new(Feedforward::<N>::new(axes, gains))
@@ -201,11 +175,11 @@ pub(super) fn feedforward_as_delivered<const N: usize>(
 
 pub(super) fn feedforward_cross_coupled<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+    v: &Values,
+) -> Boxed<N> {
     Box::new(Sum::<_, _, N>::new(
-        full_feedforward::<N>(setup, values),
-        pid::<N>(values),
+        full_feedforward::<N>(setup, v),
+        pid::<N>(v),
     ))
 }
 
@@ -214,14 +188,11 @@ fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforw
     Feedforward::new(setup.known.inverse(), [gains; N])
 }
 
-pub(super) fn input_shaping<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn input_shaping<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let settings = input_shaping::Settings {
-        frequency_hz: values.number("frequency_hz"),
-        damping_ratio: values.number("damping_ratio"),
-        impulses: values.whole("impulses") as u32,
+        frequency_hz: v.number("frequency_hz"),
+        damping_ratio: v.number("damping_ratio"),
+        impulses: v.whole("impulses") as u32,
     };
     let feedforward = feedforward_with::<N>(setup, Gains::EXACT);
     Box::new(InputShaping::new(
@@ -231,32 +202,26 @@ pub(super) fn input_shaping<const N: usize>(
     ))
 }
 
-pub(super) fn zero_phase<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
-    Box::new(inverse::<N>(setup, values))
+pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
+    Box::new(inverse::<N>(setup, v))
 }
 
-pub(super) fn zero_phase_friction<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn zero_phase_friction<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let friction = Gains {
         velocity: 0.0,
         acceleration: 0.0,
-        friction: values.number("friction_gain"),
+        friction: v.number("friction_gain"),
     };
     Box::new(Sum::<_, _, N>::new(
-        inverse::<N>(setup, values),
+        inverse::<N>(setup, v),
         feedforward_with::<N>(setup, friction),
     ))
 }
 
 /// The inverse of the closed loop, with scales on its lag and its inertia.
-fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
+fn inverse<const N: usize>(setup: &Setup<'_>, v: &Values) -> ZeroPhase<N> {
     let (known, servo_s) = (&setup.known, setup.known.period.servo_s);
-    let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
+    let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| v.number(name));
     let plain: [SampledAxis; N] = sampled_axes(known, [lag_scale, inertia_scale]);
     let filters = std::array::from_fn(|i| {
         let axis = known.axis(i);
@@ -296,18 +261,9 @@ fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis
         .map(|KnownAxis { nominal, .. }| sampled(&scaled(&nominal, scales), &known.period))
 }
 
-pub(super) fn disturbance_observer<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
-    let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
-    let feedforward = feedforward_with::<N>(
-        setup,
-        Gains {
-            friction: 0.0,
-            ..Gains::EXACT
-        },
-    );
+pub(super) fn disturbance_observer<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
+    let (bandwidth_hz, servo_s) = (v.number("bandwidth_hz"), setup.known.period.servo_s);
+    let feedforward = feedforward_with::<N>(setup, WITHOUT_FRICTION);
     let gains = |axis: &SampledAxis| disturbance_observer::gains(axis, bandwidth_hz, servo_s);
     Box::new(DisturbanceRejection::new(
         feedforward,
@@ -316,19 +272,16 @@ pub(super) fn disturbance_observer<const N: usize>(
     ))
 }
 
-pub(super) fn kalman_disturbance<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn kalman_disturbance<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let noise = AxisNoise {
-        drift_mm_s: values.number("drift_mm_s"),
-        torque_mm_s: values.number("torque_noise_mm_s"),
+        drift_mm_s: v.number("drift_mm_s"),
+        torque_mm_s: v.number("torque_noise_mm_s"),
         ..AxisNoise::DEFAULT
     };
     let feedforward = feedforward_with::<N>(
         setup,
         Gains {
-            friction: values.number("friction_gain"),
+            friction: v.number("friction_gain"),
             ..Gains::EXACT
         },
     );
@@ -406,17 +359,11 @@ pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     }
 }
 
-pub(super) fn model_predictive<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let mut horizon = HorizonSettings::<N>::DEFAULT;
-    (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
+    (horizon.knots, horizon.rate_weight) = (v.whole("knots"), v.number("rate_weight_s2"));
     horizon.limits = CorrectionLimits::of(&setup.known);
-    let servo_periods = setup
-        .known
-        .period
-        .servo_periods(values.number("feed_period_s"));
+    let servo_periods = setup.known.period.servo_periods(v.number("feed_period_s"));
     Box::new(ModelPredictive::new(
         &setup.known,
         model_predictive::Settings {
@@ -426,26 +373,20 @@ pub(super) fn model_predictive<const N: usize>(
     ))
 }
 
-pub(super) fn lqg_preview<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let settings = LqgSettings {
-        control_weight_s2: values.number("control_weight_s2"),
+        control_weight_s2: v.number("control_weight_s2"),
         bounds: offset_bounds(&setup.known),
         ..LqgSettings::DEFAULT
     };
     Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }
 
-pub(super) fn iterative_learning<const N: usize>(
-    setup: &mut Setup<'_>,
-    values: &Values,
-) -> Box<dyn Controller<N>> {
+pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, v: &Values) -> Boxed<N> {
     let settings = iterative_learning::Settings {
-        gain: values.number("gain"),
-        lead_s: values.number("lead_s"),
-        cut_off_hz: values.number("cut-off_hz"),
+        gain: v.number("gain"),
+        lead_s: v.number("lead_s"),
+        cut_off_hz: v.number("cut-off_hz"),
         ..iterative_learning::Settings::DEFAULT
     };
     Box::new(IterativeLearning::new(settings, setup.known.period.servo_s))
