@@ -34,6 +34,7 @@ use feedwright::{
     ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, LQG_IDENTIFIED,
     MAGNITUDE_ONLY, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
 };
+use feedwright_control::Schedule;
 use rows::{
     ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BANDWIDTH, BEHIND, COMPENSATION_FILTER,
     COMPENSATION_RATE, CONSTRAINED_ALLOWED, CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD,
@@ -41,6 +42,14 @@ use rows::{
     FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE, LEAD_S, LEARNING_GAIN,
     PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
 };
+
+/// Decides every so many servo periods, and sees so many feed periods ahead.
+const fn deciding(servo_periods: u32, preview: u32) -> Schedule {
+    Schedule {
+        servo_periods,
+        preview,
+    }
+}
 
 /// Rows: name, summary, source, what it knows, laps, parameters, and how it is made.
 macro_rules! peers {
