@@ -85,9 +85,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// A number of a row, by its name.
+type Number = (&'static str, fn(&Row) -> f64);
+
 fn summary(rows: &[Row]) {
     println!("\n{} programs; median, smallest and largest:", rows.len());
-    let numbers: [(&str, fn(&Row) -> f64); 7] = [
+    let numbers: [Number; 7] = [
         ("time / bound", |row| row.time_s / row.bound_s),
         ("use of a limit", |row| row.used),
         ("off, um", |row| 1e3 * row.off_mm),

@@ -15,13 +15,13 @@ use feedwright_sim::{Axis, Machine};
 
 use crate::held_out::random::Random;
 
-/// What differs from the base machine, by its name in the variant, and factors of it; of the delay
+/// Values that differ from those of the base machine: name in the variant, and factors; of the delay
 /// ms more.
-type Differences = [(&'static str, &'static [f64])];
+type ChangedValues = [(&'static str, &'static [f64])];
 
 /// Everyday differences: a workpiece on the table, a cold morning, gains that were read off a
 /// screen.
-const EVERYDAY: &Differences = &[
+const EVERYDAY: &ChangedValues = &[
     ("inertia", &[0.8, 1.25, 1.4]),
     ("inertia-y", &[1.4]),
     ("friction", &[0.75, 1.5, 1.8]),
@@ -32,7 +32,7 @@ const EVERYDAY: &Differences = &[
     ("delay", &[-0.3, 0.4, 0.8]),
 ];
 /// Gross ones: another machine.
-const GROSS: &Differences = &[
+const GROSS: &ChangedValues = &[
     ("inertia", &[3.0, 1.0 / 3.0]),
     ("kp", &[0.7]),
     ("delay", &[2.0]),
@@ -102,7 +102,7 @@ pub fn variants(base: &Machine, Variants { gross, drawn, seed }: Variants) -> Ve
                 _ => format!("{what}{by:.2}"),
             };
             all.extend(named(&name, &mut |axis, index| {
-                differ(what, by, axis, index)
+                differ(what, by, axis, index);
             }));
         }
     }

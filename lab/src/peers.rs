@@ -43,7 +43,7 @@ use rows::{
     PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
 };
 
-/// Decides every so many servo periods, and sees so many feed periods ahead.
+/// Schedule of a decision in every `servo_periods`, with `preview` feed periods ahead.
 const fn deciding(servo_periods: u32, preview: u32) -> Schedule {
     Schedule {
         servo_periods,

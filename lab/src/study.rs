@@ -17,8 +17,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::json;
 
-/// Does the items on so many threads, each with a worker of its own. The results have the order of
-/// the items.
+/// Does the items on a number of threads, each with a worker of its own. The results have the order
+/// of the items.
 ///
 /// # Errors
 /// The first error of an item; no other item is begun then.

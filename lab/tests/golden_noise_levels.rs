@@ -14,7 +14,7 @@ use serde_json::Value;
 
 const COMPARISON: &str = "examples/05_noise/noise.json";
 
-/// What the script makes of the kept comparison.
+/// Results of the script for the kept comparison.
 #[derive(Deserialize)]
 struct Study {
     table: String,

@@ -35,7 +35,7 @@ pub(crate) fn kept(file: &str) -> Comparison {
     Comparison::read(&text(file)).unwrap()
 }
 
-/// What a script of the laboratory prints; none without Python.
+/// Output of a script of the laboratory; none without Python.
 pub(crate) fn shown<T: DeserializeOwned>(command: &[&str]) -> Option<T> {
     let script = root().join("lab").join(command[0]);
     let output = Command::new(python()?)
@@ -66,7 +66,7 @@ struct Tables {
 }
 
 impl Tables {
-    /// With the results of the paper's experiment in a file.
+    /// Makes them with the results of the paper's experiment in a file.
     fn made(paper: &Path) -> Option<Self> {
         shown(&["tables.py", "--show", paper.to_str().unwrap()])
     }

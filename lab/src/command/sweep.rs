@@ -110,7 +110,7 @@ pub(super) fn write_text(
 }
 
 /// Prints that a text is in its place.
-pub(super) fn told(to: &Path) -> Result<ExitCode> {
+pub(super) fn say_place(to: &Path) -> Result<ExitCode> {
     let out = Some(to);
     printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
 }

@@ -31,40 +31,27 @@ impl Claimed {
     /// The claims, in the order of the verdicts.
     pub(super) fn all(verdicts: &[Verdict]) -> Vec<Self> {
         let of_claim = |claim: &str| {
-            let its: Vec<&Verdict> = verdicts
-                .iter()
-                .filter(|verdict| verdict.claim == claim)
-                .collect();
-            let place = |verdict: &&Verdict| {
-                (
-                    verdict.contour.clone(),
-                    verdict.machine.clone(),
-                    verdict.value,
-                )
-            };
+            let is_it = |verdict: &&Verdict| verdict.claim == claim;
+            let its: Vec<&Verdict> = verdicts.iter().filter(is_it).collect();
+            let place = |it: &&Verdict| (it.contour.clone(), it.machine.clone(), it.value);
             let short: Vec<_> = its
                 .iter()
-                .copied()
                 .filter(|verdict| !verdict.holds)
-                .map(|verdict| place(&verdict))
+                .map(place)
                 .collect();
+            let values = its.iter().map(|verdict| verdict.value);
             Self {
                 claim: claim.to_owned(),
                 limit: its[0].limit,
                 unit: its[0].unit.clone(),
                 held: its.len() - short.len(),
                 of: its.len(),
-                worst: its
-                    .iter()
-                    .map(|verdict| verdict.value)
-                    .fold(f64::NEG_INFINITY, f64::max),
+                worst: values.fold(f64::NEG_INFINITY, f64::max),
                 short,
             }
         };
-        each_once(verdicts.iter().map(|verdict| &verdict.claim))
-            .into_iter()
-            .map(of_claim)
-            .collect()
+        let claims = each_once(verdicts.iter().map(|verdict| &verdict.claim));
+        claims.into_iter().map(of_claim).collect()
     }
 }
 

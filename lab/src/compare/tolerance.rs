@@ -38,16 +38,11 @@ pub struct AtTolerance {
 
 /// The smooth contours among the workpieces.
 pub(super) fn contours(options: &ComparisonOptions) -> Vec<&'static Contour> {
-    let named = |name: &str| {
-        CONTOURS
-            .iter()
-            .find(|contour| contour.name == name && contour.is_smooth())
+    let named = |workpiece: &Workpiece| {
+        let is_it = |it: &&Contour| it.name == workpiece.name && it.is_smooth();
+        CONTOURS.iter().find(is_it)
     };
-    options
-        .workpieces
-        .iter()
-        .filter_map(|workpiece| named(&workpiece.name))
-        .collect()
+    options.workpieces.iter().filter_map(named).collect()
 }
 
 /// Raises the feedrate of a controller on a contour and returns the result; the ratio is still

@@ -105,7 +105,7 @@ impl Claim {
     }
 
     /// The ratio of a number of two rows.
-    fn ratio(&self, [row, against]: [&ComparisonRow; 2], number: Number) -> Verdict {
+    fn ratio(&self, [row, against]: [&ComparisonRow; 2], number: RowNumber) -> Verdict {
         self.of(row, &against.controller, number(row) / number(against))
     }
 
@@ -114,13 +114,13 @@ impl Claim {
     }
 
     /// The difference of a number of two rows.
-    fn above(&self, [row, against]: [&ComparisonRow; 2], number: Number) -> Verdict {
+    fn above(&self, [row, against]: [&ComparisonRow; 2], number: RowNumber) -> Verdict {
         self.of(row, &against.controller, number(row) - number(against))
     }
 }
 
 /// A number of a row.
-type Number = fn(&ComparisonRow) -> f64;
+type RowNumber = fn(&ComparisonRow) -> f64;
 
 /// The rows of a workpiece on a machine.
 struct RowsHere<'a>(&'a [ComparisonRow]);

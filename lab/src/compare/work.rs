@@ -39,7 +39,7 @@ pub struct Workpiece {
 }
 
 impl Workpiece {
-    /// With corners, and something may have been tuned on it.
+    /// A workpiece with corners, on which something may have been tuned.
     pub(super) fn of(name: impl Into<String>, steps: Vec<Step>) -> Self {
         Self {
             name: name.into(),
@@ -140,11 +140,13 @@ mod tests {
 
     #[test]
     fn controllers_are_tuned_on_a_smooth_contour_on_corners_and_on_tips() {
-        let names: Vec<String> = Workpiece::tuning()
-            .into_iter()
-            .map(|workpiece| workpiece.name)
-            .collect();
-        assert_eq!(names, ["eight", "square", "tips"]);
+        let tuning = Workpiece::tuning();
+        assert!(
+            tuning
+                .iter()
+                .map(|it| &it.name[..])
+                .eq(["eight", "square", "tips"])
+        );
     }
 
     #[test]
@@ -152,19 +154,12 @@ mod tests {
         let all = Workpiece::development();
         assert_eq!(all.len(), CONTOURS.len() + PARTS.len());
         for (i, workpiece) in all.iter().enumerate() {
-            assert!(
-                all[..i].iter().all(|other| other.name != workpiece.name),
-                "{}",
-                workpiece.name
-            );
+            let name = &workpiece.name;
+            assert!(all[..i].iter().all(|other| other.name != *name), "{name}");
             for step in &workpiece.steps {
                 if let Step::Piece(piece) = step {
-                    assert_eq!(
-                        piece.curve.at(piece.length_mm).position_mm[2],
-                        0.0,
-                        "{}",
-                        workpiece.name
-                    );
+                    let [_, _, z] = piece.curve.at(piece.length_mm).position_mm;
+                    assert_eq!(z, 0.0, "{name}");
                 }
             }
         }

@@ -6,8 +6,11 @@ use std::f64::consts::{PI, TAU};
 use super::program_writer::ProgramWriter;
 use super::random::Random;
 
-/// Kinds of programs: name, and how a part of one is written.
-const FAMILIES: [(&str, fn(&mut ProgramWriter)); 11] = [
+/// A kind of program: name, and how a part of one is written.
+type Family = (&'static str, fn(&mut ProgramWriter));
+
+/// All of them.
+const FAMILIES: [Family; 11] = [
     ("polyline", polyline),
     ("arcs", arcs),
     ("cam", cam),
@@ -280,7 +283,7 @@ mod tests {
         for seed in 0..SEEDS {
             let drawn = program(seed);
             let summary = read(&drawn);
-            let is_of = |family: &(&str, fn(&mut ProgramWriter))| drawn.name.starts_with(family.0);
+            let is_of = |family: &Family| drawn.name.starts_with(family.0);
             let family = FAMILIES.iter().position(is_of).expect("a family");
             seen[family] += 1;
             let text = &drawn.text;

@@ -47,9 +47,9 @@ pub fn draw(
         for _ in 0..for_each {
             let drawn = programs::program(seeds.random_range(0..SEEDS));
             let length = Length(&machine, LIMIT_S);
-            let program = Arc::new(SweepProgram::from_text(&drawn.name, &drawn.text, length)?);
+            let program = SweepProgram::from_text(&drawn.name, &drawn.text, length)?;
             let job = SweepJob {
-                program,
+                program: Arc::new(program),
                 machine: machine.clone(),
                 model: machine.clone(),
             };

@@ -78,10 +78,8 @@ const DEPARTURES: [Departure; 7] = [
             "Kd is not printed; here 0.05",
         ],
         |case| {
-            case.machine
-                .axes
-                .iter_mut()
-                .for_each(|axis| axis.kd = PD_GAIN)
+            let axes = case.machine.axes.iter_mut();
+            axes.for_each(|axis| axis.kd = PD_GAIN);
         },
     ),
     (

@@ -242,7 +242,7 @@ impl<const N: usize> DisturbanceRejection<N> {
         Command::straight(rate, lead_mm)
     }
 
-    /// What the observers call for, against the disturbance.
+    /// Loads that take out the estimated disturbances, mm/s.
     fn load_mm_s(&self) -> [f64; N] {
         self.observers
             .each_ref()

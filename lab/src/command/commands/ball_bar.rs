@@ -8,7 +8,7 @@ use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::command::args::ball_bar::BallBarArgs;
-use crate::command::sweep::{told, write_text};
+use crate::command::sweep::{say_place, write_text};
 
 /// Samples of a circle: as many as usual bars take.
 const SAMPLES: u32 = 3600;
@@ -68,5 +68,5 @@ pub(crate) fn run(args: &BallBarArgs, console: &Console) -> Result<ExitCode> {
         let found = sets.iter().filter_map(Circularity::of);
         found.for_each(|of| remark(&of.line()));
     }
-    told(&args.out)
+    say_place(&args.out)
 }

@@ -6,7 +6,7 @@ use feedwright::command::{Console, remark};
 use miette::{Result, miette};
 
 use crate::command::args::export_contour::ExportContourArgs;
-use crate::command::sweep::{told, write_text};
+use crate::command::sweep::{say_place, write_text};
 use crate::contour::contour;
 use crate::contour_program::contour_program;
 
@@ -45,5 +45,5 @@ pub(crate) fn run(args: &ExportContourArgs, console: &Console) -> Result<ExitCod
             contour.name, contour.about
         ));
     }
-    told(&args.out)
+    say_place(&args.out)
 }

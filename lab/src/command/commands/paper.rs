@@ -57,6 +57,9 @@ fn print_departures(rows: &[DepartureResult]) -> std::io::Result<()> {
     Ok(())
 }
 
+/// A ratio of a draw, by its name.
+type Ratio = (&'static str, fn(&Draw) -> f64);
+
 /// Prints a table of Markdown.
 fn print_draws(draws: &[Draw]) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
@@ -65,7 +68,7 @@ fn print_draws(draws: &[Draw]) -> std::io::Result<()> {
         draws.len()
     );
     writeln!(out, "\n{head}\n|---|--:|--:|--:|--:|--:|")?;
-    let ratios: [(&str, fn(&Draw) -> f64); 3] = [
+    let ratios: [Ratio; 3] = [
         ("RMS ratio", |draw| draw.rms_ratio),
         ("max ratio", |draw| draw.max_ratio),
         ("time ratio", |draw| draw.time_ratio),
