@@ -139,7 +139,8 @@ paper-horizon:
 # The limit, peers and our controllers over the level of each kind of noise: table, figures and noise.json of examples/05_noise, some ten
 # to twenty minutes. `just noise-levels target/noise 2` tries it with two levels each.
 noise-levels out="examples/05_noise" levels="5":
-    cargo run --release --quiet -p feedwright-lab --example noise_levels -- {{ out }} {{ levels }}
+    cargo build --release --quiet -p feedwright-lab --bins --example draw
+    lab/noise_levels.py {{ out }} {{ levels }}
 
 # Percentiles of the time of a whole decision of the regulator, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
@@ -178,9 +179,9 @@ gym-peers python="target/python-tests/bin/python":
 # Regenerate the tables and the figures of docs/results.md and of examples/.
 tables: paper compare held-out-table imperfections
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
-    cp target/compare.json examples/02_horizon/
+    cp target/compare.json examples/02_contours/
     cp target/held_out.json target/imperfections.json examples/03_realism/
-    cargo run --release -p feedwright-lab --example tables
+    lab/tables.py
 
 # Write the messages of docs/gcode-mistakes.md anew.
 mistakes:

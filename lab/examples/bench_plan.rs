@@ -50,10 +50,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Error>> {
     let name = program.file_stem().unwrap_or_default().to_string_lossy();
     let constraints = Constraints::from(machine);
-    let mut read: Vec<Step> =
-        path_steps(Reader::open(program, Settings::default())?.map_while(Result::ok))
-            .map_while(Result::ok)
-            .collect();
+    let canon = Reader::open(program, Settings::default())?.map_while(Result::ok);
+    let mut read: Vec<Step> = path_steps(canon).map_while(Result::ok).collect();
     leave_out_the_way_there(&mut read);
     if let Some((_, until_s)) = BEGINNINGS_S
         .iter()
@@ -63,17 +61,9 @@ fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Erro
     }
     let steps = || Ok(Box::new(read.iter().cloned().map(Ok)) as Steps<'_>);
     let found = cycle_time(machine, true, steps, &())?;
-    let stages = Stages {
-        planner: feed_planner("linuxcnc").ok_or("no linuxcnc")?,
-    };
-    let linuxcnc = cycle_time_by(
-        stages,
-        machine,
-        &constraints,
-        CycleTimeOptions::default(),
-        steps,
-        &(),
-    )?;
+    let planner = feed_planner("linuxcnc").ok_or("no linuxcnc")?;
+    let (stages, options) = (Stages { planner }, CycleTimeOptions::default());
+    let linuxcnc = cycle_time_by(stages, machine, &constraints, options, steps, &())?;
     let whole_s = planned(&mut TimeOptimal::whole_within(&constraints), &read);
     let alone = Alone::of(&constraints, &read);
     let bound_s = found.bound_s.unwrap_or(f64::NAN);
@@ -100,10 +90,9 @@ fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Erro
 
 /// Leaves out rapids before the first cut, where the tool rests between.
 fn leave_out_the_way_there(steps: &mut Vec<Step>) {
-    let cut = steps
-        .iter()
-        .position(|step| matches!(step, Step::Piece(Piece { cutting: true, .. })));
-    let rest = steps[..cut.unwrap_or(0)]
+    let cuts = |step: &Step| matches!(step, Step::Piece(Piece { cutting: true, .. }));
+    let before = &steps[..steps.iter().position(cuts).unwrap_or(0)];
+    let rest = before
         .iter()
         .rposition(|step| !matches!(step, Step::Piece(_)));
     steps.drain(..rest.map_or(0, |rest| rest + 1));
@@ -157,9 +146,8 @@ fn planned(planner: &mut dyn FeedPlanner, steps: &[Step]) -> f64 {
 }
 
 fn popped_s(planner: &mut dyn FeedPlanner) -> f64 {
-    std::iter::from_fn(|| planner.pop())
-        .map(|span| span.duration_s)
-        .sum()
+    let spans = std::iter::from_fn(|| planner.pop());
+    spans.map(|span| span.duration_s).sum()
 }
 
 /// Results of the planner alone.
@@ -187,12 +175,8 @@ impl Alone {
         push_all(&mut again, steps, |planner| {
             let motion_s = popped_s(planner);
             let now_s = processor_s();
-            if motion_s > 0.0 {
-                latenesses.extend(
-                    now_s
-                        .zip(before_s)
-                        .map(|(now_s, before_s)| (now_s - before_s) / motion_s),
-                );
+            if let (Some(now_s), Some(before_s), true) = (now_s, before_s, motion_s > 0.0) {
+                latenesses.push((now_s - before_s) / motion_s);
             }
             before_s = now_s;
         });
@@ -224,9 +208,8 @@ fn programs_in(folder: &Path) -> Vec<PathBuf> {
         eprintln!("no programs at {}", folder.display());
         return Vec::new();
     };
-    let mut found: Vec<PathBuf> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .collect();
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut found: Vec<PathBuf> = paths.collect();
     found.retain(|path| path.extension().is_some_and(|extension| extension == "ngc"));
     found.sort();
     found

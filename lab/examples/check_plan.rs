@@ -53,25 +53,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--count" => count = value()?.parse()?,
             path => {
                 let path = PathBuf::from(path);
-                let name = path
-                    .file_name()
-                    .unwrap_or_default()
-                    .to_string_lossy()
-                    .into_owned();
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let text = std::fs::read(&path)?;
                 programs.push((
-                    name,
-                    String::from_utf8_lossy(&std::fs::read(&path)?).into_owned(),
+                    name.into_owned(),
+                    String::from_utf8_lossy(&text).into_owned(),
                 ));
             }
         }
     }
     if let Some(seed) = seed {
-        let drawn = draw(seed, count, 1, Class::Any)?;
-        programs.extend(
-            drawn
-                .into_iter()
-                .map(|made| (made.job.program.name.clone(), made.text)),
-        );
+        let drawn = draw(seed, count, 1, Class::Any)?.into_iter();
+        programs.extend(drawn.map(|made| (made.job.program.name.clone(), made.text)));
     }
     let machine = machine.planned_by_axes(tolerance_um);
     println!(
@@ -82,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (name, text) in programs {
         match Row::of(&name, &text, &machine, bound) {
             Ok(row) => {
-                row.print(&name);
+                println!("| {name} | {} |", row.cells());
                 rows.push(row);
             }
             Err(why) => eprintln!("{name}: left out: {why}"),
@@ -92,40 +85,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// A number of a row, by its name.
+type Number = (&'static str, fn(&Row) -> f64);
+
 fn summary(rows: &[Row]) {
-    let of = |value: fn(&Row) -> f64| {
-        let mut values: Vec<f64> = rows
-            .iter()
-            .map(value)
-            .filter(|value| value.is_finite())
-            .collect();
-        values.sort_by(f64::total_cmp);
-        (
-            values.get(values.len() / 2).copied().unwrap_or(f64::NAN),
-            values,
-        )
-    };
     println!("\n{} programs; median, smallest and largest:", rows.len());
-    for (name, value) in [
-        (
-            "time / bound",
-            (|row| row.time_s / row.bound_s) as fn(&Row) -> f64,
-        ),
+    let numbers: [Number; 7] = [
+        ("time / bound", |row| row.time_s / row.bound_s),
         ("use of a limit", |row| row.used),
         ("off, um", |row| 1e3 * row.off_mm),
         ("off / tolerance", |row| row.off_share),
         ("uncut, um", |row| 1e3 * row.uncut_mm),
         ("x real time", |row| row.time_s / row.took_s),
         ("blocks/s", |row| row.motions as f64 / row.took_s),
-    ] {
-        let (median, values) = of(value);
-        let ends = [values.first(), values.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-        println!(
-            "{name:<16} {median:>12.5} {:>12.5} {:>12.5}   ({} of them)",
-            ends[0],
-            ends[1],
-            values.len()
-        );
+    ];
+    for (name, number) in numbers {
+        let mut values: Vec<f64> = rows.iter().map(number).filter(|n| n.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        let count = values.len();
+        let at = |place: usize| values.get(place).copied().unwrap_or(f64::NAN);
+        let [median, least, most] = [count / 2, 0, count.saturating_sub(1)].map(at);
+        println!("{name:<16} {median:>12.5} {least:>12.5} {most:>12.5}   ({count} of them)");
     }
 }
 
@@ -150,69 +130,49 @@ impl Row {
         machine: &Machine,
         bound: bool,
     ) -> Result<Self, Box<dyn std::error::Error>> {
-        let mut canon = Vec::new();
-        for step in Reader::from_text(name, text, Settings::default())? {
-            canon.push(step?);
-        }
+        let read = Reader::from_text(name, text, Settings::default())?;
+        let mut canon = read.collect::<Result<Vec<_>, _>>()?;
         let constraints = Constraints::from(machine);
         let motions = shortened(&mut canon, &constraints)?;
         let path = WantedPath::of(&canon)?;
-        let steps = || path_steps(canon.clone());
         let begun = Instant::now();
-        let planner = Stages::of(machine).planner;
-        let phases: Vec<Phase> = Plan::new(steps(), &constraints, planner, Plc::default())?
-            .filter_map(|planned| moving(&planned))
-            .collect();
+        let (steps, planner) = (path_steps(canon.clone()), Stages::of(machine).planner);
+        let plan = Plan::new(steps, &constraints, planner, Plc::default())?;
+        let phases: Vec<Phase> = plan.filter_map(|planned| moving(&planned)).collect();
         let took_s = begun.elapsed().as_secs_f64();
-        let time_s = phases.iter().map(|phase| phase.duration_s).sum();
-        let bound_s = if bound {
-            bound_s(canon.clone(), machine)
-        } else {
-            f64::NAN
-        };
         let mut ruler = Ruler::new(&path, &constraints);
         runs(&phases, |positions| ruler.run(positions));
-        let uncut_mm = ruler.uncut_mm();
-        let Ruler {
-            used,
-            limit,
-            off_mm,
-            off_share,
-            ..
-        } = ruler;
         Ok(Self {
             motions,
-            time_s,
-            bound_s,
-            used,
-            limit,
-            off_mm,
-            off_share,
-            uncut_mm,
+            time_s: phases.iter().map(|phase| phase.duration_s).sum(),
+            bound_s: if bound {
+                bound_s(canon, machine)
+            } else {
+                f64::NAN
+            },
+            used: ruler.used,
+            off_mm: ruler.off_mm,
+            off_share: ruler.off_share,
+            uncut_mm: ruler.uncut_mm(),
+            limit: ruler.limit,
             took_s,
         })
     }
 
-    fn print(&self, name: &str) {
-        let Self {
-            motions,
-            time_s,
-            bound_s,
-            used,
-            limit,
-            off_mm,
-            off_share,
-            uncut_mm,
-            took_s,
-        } = self;
-        println!(
-            "| {name} | {motions} | {time_s:.3} | {:.4} | {used:.6} | {limit} | {:.3} | {off_share:.4} | {:.3} | {:.1} | {:.0} |",
-            time_s / bound_s,
-            1e3 * off_mm,
-            1e3 * uncut_mm,
-            time_s / took_s,
-            *motions as f64 / took_s
-        );
+    fn cells(&self) -> String {
+        format!(
+            "{} | {:.3} | {:.4} | {:.6} | {} | {:.3} | {:.4} | {:.3} | {:.1} | {:.0}",
+            self.motions,
+            self.time_s,
+            self.time_s / self.bound_s,
+            self.used,
+            self.limit,
+            1e3 * self.off_mm,
+            self.off_share,
+            1e3 * self.uncut_mm,
+            self.time_s / self.took_s,
+            self.motions as f64 / self.took_s
+        )
     }
 }
 
@@ -235,11 +195,7 @@ fn shortened(canon: &mut Vec<Canon>, constraints: &Constraints) -> Result<usize,
             return Err("rotary axes");
         }
         motions += 1;
-        let chord = (0..3)
-            .map(|k| (motion.end_mm[k] - motion.start_mm[k]).powi(2))
-            .sum::<f64>()
-            .sqrt();
-        time_s += chord / allowed_mm_s(motion, constraints);
+        time_s += distance(motion.start_mm, motion.end_mm) / allowed_mm_s(motion, constraints);
         if time_s > MOST_S {
             until = i + 1;
             break;
@@ -273,9 +229,8 @@ fn bound_s(canon: Vec<Canon>, machine: &Machine) -> f64 {
             Plc::default(),
         );
         let time_s = plan.map(|plan| {
-            plan.filter_map(|planned| moving(&planned))
-                .map(|phase| phase.duration_s)
-                .sum()
+            let phases = plan.filter_map(|planned| moving(&planned));
+            phases.map(|phase| phase.duration_s).sum()
         });
         // The other end is gone where the time was over.
         let _ = sender.send(time_s.unwrap_or(f64::NAN));
@@ -307,6 +262,7 @@ fn runs(phases: &[Phase], mut each: impl FnMut(&[Point])) {
 }
 
 /// The programmed path as chords.
+#[derive(Default)]
 struct WantedPath {
     points: Vec<Point>,
     /// Arc length at each point, mm, and the motion that leads there.
@@ -318,27 +274,19 @@ struct WantedPath {
 
 impl WantedPath {
     fn of(canon: &[Canon]) -> Result<Self, &'static str> {
-        let mut path = Self {
-            points: Vec::new(),
-            at_mm: Vec::new(),
-            motion: Vec::new(),
-            motions: Vec::new(),
-        };
-        for step in canon {
-            let Canon::Motion(motion) = step else {
-                continue;
-            };
+        let mut path = Self::default();
+        let motions = canon.iter().filter_map(|step| match step {
+            Canon::Motion(motion) => Some(motion),
+            _ => None,
+        });
+        for motion in motions {
             let number = path.motions.len();
             if path.points.is_empty() {
                 path.push(motion.start_mm, number);
             }
             match &motion.shape {
                 Shape::Line => path.push(motion.end_mm, number),
-                Shape::Arc {
-                    plane,
-                    center_mm,
-                    turns,
-                } => path.arc(motion, plane.axes(), *center_mm, *turns, number),
+                Shape::Arc { .. } => path.arc(motion, number),
                 Shape::Spline(_) => return Err("a spline"),
             }
             let tolerance_mm = match motion.corner {
@@ -361,14 +309,16 @@ impl WantedPath {
         self.motion.push(motion);
     }
 
-    fn arc(
-        &mut self,
-        motion: &Motion,
-        [a, b, n]: [usize; 3],
-        center: Point,
-        turns: i32,
-        number: usize,
-    ) {
+    fn arc(&mut self, motion: &Motion, number: usize) {
+        let Shape::Arc {
+            plane,
+            center_mm: center,
+            turns,
+        } = motion.shape
+        else {
+            return;
+        };
+        let [a, b, n] = plane.axes();
         let polar = |point: Point| {
             let [x, y] = [point[a] - center[a], point[b] - center[b]];
             (x.hypot(y), y.atan2(x))
@@ -382,9 +332,8 @@ impl WantedPath {
             angle = full;
         }
         angle += full * f64::from(turns.abs() - 1);
-        let count = (angle * (r0.max(r1) / (8.0 * CHORD_MM)).sqrt())
-            .ceil()
-            .max(1.0);
+        let chords = angle * (r0.max(r1) / (8.0 * CHORD_MM)).sqrt();
+        let count = chords.ceil().max(1.0);
         for i in 1..count as u32 {
             let part = f64::from(i) / count;
             let (r, turned) = (r0 + part * (r1 - r0), from + sense * part * angle);
@@ -443,31 +392,26 @@ impl<'a> Ruler<'a> {
             feeds.push(self.place(pair[0], pair[1]));
         }
         for (pair, feed_mm_s) in positions.windows(2).zip(feeds) {
-            self.uses(distance(pair[0], pair[1]) / H / feed_mm_s, || {
-                "feedrate".to_owned()
-            });
+            let share = distance(pair[0], pair[1]) / H / feed_mm_s;
+            self.uses(share, || "feedrate".to_owned());
         }
+        let axes = &self.constraints.axes;
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let Some(limits) = self
-                .constraints
-                .axes
-                .get(k)
-                .or(self.constraints.axes.last())
-                .copied()
-            else {
+            let Some(limits) = axes.get(k).or(axes.last()) else {
                 return;
             };
             for w in positions.windows(4) {
                 let [p, q, r, s] = [w[0][k], w[1][k], w[2][k], w[3][k]];
-                self.uses((q - p).abs() / H / limits.velocity_mm_s, || {
-                    format!("{name} velocity")
-                });
-                self.uses(
-                    (r - 2.0 * q + p).abs() / (H * H) / limits.accel_mm_s2,
-                    || format!("{name} acceleration"),
-                );
+                let velocity_mm_s = (q - p).abs() / H;
+                let accel_mm_s2 = (r - 2.0 * q + p).abs() / (H * H);
                 let jerk_mm_s3 = (s - 3.0 * r + 3.0 * q - p).abs() / (H * H * H);
-                self.uses(jerk_mm_s3 / limits.jerk_mm_s3, || format!("{name} jerk"));
+                for (share, what) in [
+                    (velocity_mm_s / limits.velocity_mm_s, "velocity"),
+                    (accel_mm_s2 / limits.accel_mm_s2, "acceleration"),
+                    (jerk_mm_s3 / limits.jerk_mm_s3, "jerk"),
+                ] {
+                    self.uses(share, || format!("{name} {what}"));
+                }
             }
         }
     }
@@ -476,20 +420,14 @@ impl<'a> Ruler<'a> {
     /// path from the step behind it. Returns the highest feedrate programmed within a tolerance of
     /// that place, mm/s.
     fn place(&mut self, point: Point, next: Point) -> f64 {
-        let WantedPath {
-            points,
-            at_mm,
-            motion,
-            motions,
-        } = self.path;
+        let (points, at_mm) = (&self.path.points, &self.path.at_mm);
+        let last = points.len() - 1;
+        let motion_to = |point: usize| &self.path.motions[self.path.motion[point.min(last)]];
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(0.01);
-        let tolerance_mm = |chord: usize| {
-            motions[motion[(chord + 1).min(motion.len() - 1)]]
-                .1
-                .unwrap_or(machine_mm)
-        };
-        let window_mm =
-            WINDOW * tolerance_mm(self.nearest).max(machine_mm) + 2.0 * distance(point, next);
+        let tolerance_mm = |chord: usize| motion_to(chord + 1).1.unwrap_or(machine_mm);
+        let step_mm = distance(point, next);
+        let near_mm = tolerance_mm(self.nearest);
+        let window_mm = WINDOW * near_mm.max(machine_mm) + 2.0 * step_mm;
         let from_mm = self.at_mm;
         let first = at_mm
             .partition_point(|at| *at < from_mm - window_mm)
@@ -499,8 +437,8 @@ impl<'a> Ruler<'a> {
         while i + 1 < points.len() && at_mm[i] <= from_mm + window_mm {
             // Only what lies in the window: a long chord may pass near the tool elsewhere.
             let length = (at_mm[i + 1] - at_mm[i]).max(f64::MIN_POSITIVE);
-            let parts = [-1.0, 1.0]
-                .map(|side| ((from_mm + side * window_mm - at_mm[i]) / length).clamp(0.0, 1.0));
+            let part = |side: f64| (from_mm + side * window_mm - at_mm[i]) / length;
+            let parts = [-1.0, 1.0].map(|side| part(side).clamp(0.0, 1.0));
             let (away, part) = from_segment(point, points[i], points[i + 1], parts);
             least = least.min(away);
             places.push((away, i, at_mm[i] + part * length));
@@ -510,51 +448,34 @@ impl<'a> Ruler<'a> {
         }
         // Where a path goes back on itself, several places are within the tolerance: the tool is
         // where its way since the last place that was the only one leads to.
-        let near_mm = tolerance_mm(self.nearest);
         places.retain(|(away, ..)| *away <= least.max(near_mm));
         let expected = |(_, _, at): &(f64, usize, f64)| (at - from_mm).abs();
-        let Some(&(.., about)) = places
-            .iter()
-            .min_by(|a, b| expected(a).total_cmp(&expected(b)))
-        else {
+        let by_way = |a: &&_, b: &&_| expected(a).total_cmp(&expected(b));
+        let Some(&(.., about)) = places.iter().min_by(by_way) else {
             return f64::INFINITY;
         };
-        let step_mm = distance(point, next);
-        let is_there =
-            |(.., at): &&(f64, usize, f64)| (at - about).abs() < 4.0 * (step_mm + near_mm);
+        let near = |(.., at): &&(f64, usize, f64)| (at - about).abs() < 4.0 * (step_mm + near_mm);
         let there = places
             .iter()
-            .filter(is_there)
+            .filter(near)
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let (_, nearest, at) = there.copied().unwrap_or((0.0, self.nearest, from_mm));
-        self.at_mm = step_mm
-            + if places.iter().all(|place| is_there(&place)) {
-                at
-            } else {
-                from_mm
-            };
-        if let (Some(last), true) = (points.last(), i + 1 >= points.len()) {
-            let (reached, _) = from_segment(*last, point, next, [0.0, 1.0]);
-            let end = self.reached_mm.len() - 1;
-            self.reached_mm[end] = self.reached_mm[end].min(reached);
+        let is_clear = places.iter().all(|place| near(&place));
+        self.at_mm = step_mm + if is_clear { at } else { from_mm };
+        if i >= last {
+            let (reached, _) = from_segment(points[last], point, next, [0.0, 1.0]);
+            self.reached_mm[last] = self.reached_mm[last].min(reached);
         }
         self.nearest = nearest;
         self.off_mm = self.off_mm.max(least);
         let tolerance_mm = tolerance_mm(nearest);
         self.off_share = self.off_share.max(least / tolerance_mm);
+        let reach_mm = 4.0 * tolerance_mm + distance(points[nearest], point);
         let [lo, hi] = [-1.0, 1.0].map(|side| {
-            let at =
-                at_mm[nearest] + side * (4.0 * tolerance_mm + distance(points[nearest], point));
-            at_mm
-                .partition_point(|place| *place < at)
-                .min(motion.len() - 1)
+            let at = at_mm[nearest] + side * reach_mm;
+            at_mm.partition_point(|place| *place < at).min(last)
         });
-        let feed = |i: usize| {
-            allowed_mm_s(
-                &motions[motion[i.min(motion.len() - 1)]].0,
-                self.constraints,
-            )
-        };
+        let feed = |i: usize| allowed_mm_s(&motion_to(i).0, self.constraints);
         (lo..=hi + 1).map(feed).fold(0.0, f64::max)
     }
 
@@ -577,8 +498,6 @@ fn from_segment(point: Point, a: Point, b: Point, [first, last]: [f64; 2]) -> (f
     } else {
         first
     };
-    (
-        distance(point, std::array::from_fn(|k| a[k] + part * along[k])),
-        part,
-    )
+    let nearest = std::array::from_fn(|k| a[k] + part * along[k]);
+    (distance(point, nearest), part)
 }

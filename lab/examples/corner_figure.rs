@@ -5,8 +5,7 @@
 //! planned path beside the programmed one.
 
 use feedwright::{COLORS, Figure, LineStyle, Panel, Polyline};
-use feedwright_gcode::canon::Corner;
-use feedwright_lab::{contour, limited_machine};
+use feedwright_lab::{CORNER, contour, limited_machine};
 use feedwright_plan::{AxisMotion, Constraints, Plan, Planned, Plc};
 use feedwright_sim::Stages;
 
@@ -30,31 +29,21 @@ fn main() -> Result<(), Failure> {
     };
     let nearest = samples
         .iter()
-        .min_by(|a, b| away(&a.1).total_cmp(&away(&b.1)))
-        .ok_or("there is no motion")?;
+        .min_by(|a, b| away(&a.1).total_cmp(&away(&b.1)));
+    let (corner_s, motion) = nearest.ok_or("there is no motion")?;
+    let speed_mm_s = motion.velocity_mm_s[0].hypot(motion.velocity_mm_s[1]);
     println!(
-        "at the corner: {:.2} mm/s, {:.2} um away",
-        speed_mm_s(&nearest.1),
-        1e3 * away(&nearest.1)
+        "at the corner: {speed_mm_s:.2} mm/s, {:.2} um away",
+        1e3 * away(motion)
     );
-    std::fs::write(file, figure(&samples, nearest.0).to_svg())?;
-    Ok(())
-}
-
-fn speed_mm_s(motion: &AxisMotion) -> f64 {
-    motion.velocity_mm_s[0].hypot(motion.velocity_mm_s[1])
+    Ok(std::fs::write(file, figure(&samples, *corner_s).to_svg())?)
 }
 
 /// Returns the motion of the axes every 0.1 ms on the square of 20 mm at 200 mm/s.
 fn samples() -> Result<Vec<(f64, AxisMotion)>, Failure> {
     let machine = limited_machine(10.0);
-    let corner = Corner::Continuous {
-        tolerance_mm: None,
-        merge_mm: None,
-    };
-    let steps = contour("square")
-        .ok_or("there is no square")?
-        .steps(200.0, corner)?;
+    let square = contour("square").ok_or("there is no square")?;
+    let steps = square.steps(200.0, CORNER)?;
     let (constraints, stages) = (Constraints::from(&machine), Stages::of(&machine));
     let steps = Box::new(steps.into_iter().map(Ok));
     let mut found = Vec::new();
@@ -73,19 +62,19 @@ fn samples() -> Result<Vec<(f64, AxisMotion)>, Failure> {
 }
 
 fn figure(samples: &[(f64, AxisMotion)], corner_s: f64) -> Figure {
-    let near: Vec<&(f64, AxisMotion)> = samples
+    let near = samples
         .iter()
-        .filter(|(t_s, _)| (t_s - corner_s).abs() < AROUND_S)
-        .collect();
+        .filter(|(t_s, _)| (t_s - corner_s).abs() < AROUND_S);
     let over_time = |title: &str, y_title: &str, value: fn(&AxisMotion) -> [f64; 3]| {
-        let curve = |k: usize| Polyline {
-            label: AXES[k].to_owned(),
-            points: near
-                .iter()
-                .map(|(t_s, motion)| [1e3 * (t_s - corner_s), value(motion)[k]])
-                .collect(),
-            color: COLORS[k + 1].to_owned(),
-            ..Polyline::default()
+        let curve = |k: usize| {
+            let point =
+                |(t_s, motion): &(f64, AxisMotion)| [1e3 * (t_s - corner_s), value(motion)[k]];
+            curve(
+                AXES[k],
+                near.clone().map(point).collect(),
+                LineStyle::Solid,
+                k + 1,
+            )
         };
         Panel {
             title: title.to_owned(),
@@ -111,36 +100,33 @@ fn figure(samples: &[(f64, AxisMotion)], corner_s: f64) -> Figure {
     }
 }
 
+fn curve(label: &str, points: Vec<[f64; 2]>, line: LineStyle, color: usize) -> Polyline {
+    Polyline {
+        label: label.to_owned(),
+        points,
+        line,
+        color: COLORS[color].to_owned(),
+    }
+}
+
 /// The corner from above, um from it.
 fn plane(samples: &[(f64, AxisMotion)]) -> Panel {
     let um = |point_mm: [f64; 2]| [0, 1].map(|k| 1e3 * (point_mm[k] - CORNER_MM[k]));
     let planned = samples
         .iter()
-        .map(|(_, motion)| [motion.position_mm[0], motion.position_mm[1]]);
+        .map(|(_, motion)| [0, 1].map(|k| motion.position_mm[k]));
     let near = planned.filter(|p| (0..2).all(|k| (p[k] - CORNER_MM[k]).abs() < AROUND_MM));
-    let range = Some([-1e3 * AROUND_MM, 0.4e3 * AROUND_MM]);
+    let programmed = [[-AROUND_MM, 0.0], [0.0, 0.0], [0.0, AROUND_MM]].map(|p| p.map(|x| 1e3 * x));
     Panel {
         title: "(d) In the plane".to_owned(),
         x_title: "x from the corner [µm]".to_owned(),
         y_title: "y from the corner [µm]".to_owned(),
         curves: vec![
-            Polyline {
-                label: "programmed".to_owned(),
-                points: [[-AROUND_MM, 0.0], [0.0, 0.0], [0.0, AROUND_MM]]
-                    .map(|p| p.map(|x| 1e3 * x))
-                    .to_vec(),
-                line: LineStyle::Thin,
-                color: COLORS[0].to_owned(),
-            },
-            Polyline {
-                label: "planned".to_owned(),
-                points: near.map(um).collect(),
-                color: COLORS[3].to_owned(),
-                ..Polyline::default()
-            },
+            curve("programmed", programmed.to_vec(), LineStyle::Thin, 0),
+            curve("planned", near.map(um).collect(), LineStyle::Solid, 3),
         ],
         equal_axes: true,
-        x_range: range,
+        x_range: Some([-1e3 * AROUND_MM, 0.4e3 * AROUND_MM]),
         y_range: Some([-0.4e3 * AROUND_MM, 1e3 * AROUND_MM]),
         ..Panel::default()
     }

@@ -19,8 +19,7 @@ use copp::solver::topp3_socp::{
     ClarabelOptionsBuilder, Topp3ProblemBuilder, s_to_t_topp3, t_to_s_topp3, topp3_socp,
 };
 use feedwright::cycle_time_within;
-use feedwright_gcode::canon::Corner;
-use feedwright_lab::{AXIS_LIMITS as LIMITS, contour, limited_machine};
+use feedwright_lab::{AXIS_LIMITS as LIMITS, CORNER, contour, limited_machine};
 use feedwright_plan::{Constraints, Curve, Step, Steps};
 
 /// Contours of one smooth curve. Of the butterfly, with its tips between stations, the peer makes a
@@ -65,16 +64,10 @@ fn main() -> Result<(), Failure> {
     for name in &names {
         let peer = peer(&curve_of(name)?)?;
         let [near, far] = [ours(name, TOLERANCES_UM[0])?, ours(name, TOLERANCES_UM[1])?];
+        let ratio = far.0 / peer.time_s;
         println!(
-            "| {name} | {:.4} | {:.3} | {:.3} | {:.4} | {:.3} | {:.4} | {:.3} | {:.3} |",
-            peer.time_s,
-            peer.jerk,
-            peer.took_s,
-            near.0,
-            near.1,
-            far.0,
-            far.1,
-            far.0 / peer.time_s
+            "| {name} | {:.4} | {:.3} | {:.3} | {:.4} | {:.3} | {:.4} | {:.3} | {ratio:.3} |",
+            peer.time_s, peer.jerk, peer.took_s, near.0, near.1, far.0, far.1
         );
     }
     Ok(())
@@ -91,22 +84,16 @@ fn ours(name: &str, tolerance_um: f64) -> Result<(f64, f64), Failure> {
 }
 
 fn contour_steps(name: &str) -> Result<Vec<Step>, Failure> {
-    let corner = Corner::Continuous {
-        tolerance_mm: None,
-        merge_mm: None,
-    };
-    Ok(contour(name)
-        .ok_or_else(|| format!("there is no contour {name}"))?
-        .steps(LIMITS[0], corner)?)
+    let contour = contour(name).ok_or_else(|| format!("there is no contour {name}"))?;
+    Ok(contour.steps(LIMITS[0], CORNER)?)
 }
 
 fn curve_of(name: &str) -> Result<Curve, Failure> {
-    let mut curves = contour_steps(name)?
-        .into_iter()
-        .filter_map(|step| match step {
-            Step::Piece(piece) => Some(piece.curve),
-            _ => None,
-        });
+    let steps = contour_steps(name)?.into_iter();
+    let mut curves = steps.filter_map(|step| match step {
+        Step::Piece(piece) => Some(piece.curve),
+        _ => None,
+    });
     match (curves.next(), curves.next()) {
         (Some(curve), None) => Ok(curve),
         _ => Err(format!("{name} is not one smooth curve").into()),
@@ -163,20 +150,16 @@ fn peer(curve: &Curve) -> Result<PeerPlan, Failure> {
 /// Squares of speeds to linearise about: at rest at the ends alone.
 fn between_rests(squares: &[f64]) -> Vec<f64> {
     let last = squares.len() - 1;
-    let least = |(i, a): (usize, &f64)| {
-        if i == 0 || i == last {
-            a.max(0.0)
-        } else {
-            a.max(LEAST_SQUARE)
-        }
+    let least = |(i, a): (usize, &f64)| match i {
+        _ if i == 0 || i == last => a.max(0.0),
+        _ => a.max(LEAST_SQUARE),
     };
     squares.iter().enumerate().map(least).collect()
 }
 
 fn stations(length_mm: f64) -> Vec<f64> {
-    (0..STATIONS)
-        .map(|i| length_mm * i as f64 / (STATIONS - 1) as f64)
-        .collect()
+    let at = |i: usize| length_mm * i as f64 / (STATIONS - 1) as f64;
+    (0..STATIONS).map(at).collect()
 }
 
 /// Each axis and its derivatives by arc length.
@@ -197,10 +180,12 @@ fn largest_jerk(curve: &Curve, places_mm: &[f64]) -> f64 {
         .iter()
         .map(|&s_mm| curve.at(s_mm).position_mm)
         .collect();
-    let even = &points[..points.len().saturating_sub(1)];
-    let jerks = even.windows(4).flat_map(|p| {
-        (0..AXES)
-            .map(|k| (p[3][k] - 3.0 * p[2][k] + 3.0 * p[1][k] - p[0][k]).abs() / SAMPLE_S.powi(3))
-    });
-    jerks.fold(0.0, f64::max)
+    let mut largest = 0.0_f64;
+    for p in points[..points.len().saturating_sub(1)].windows(4) {
+        for k in 0..AXES {
+            let third = p[3][k] - 3.0 * p[2][k] + 3.0 * p[1][k] - p[0][k];
+            largest = largest.max(third.abs() / SAMPLE_S.powi(3));
+        }
+    }
+    largest
 }

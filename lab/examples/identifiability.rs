@@ -11,8 +11,9 @@ use feedwright_control::{
     Command, ContourIdentifier, Controller, Delays, ERROR_SCALE_MM, FEED_SCALE_MM_S, Gradient,
     INPUTS, Inputs, InvertingSettings, Measured, Schedule, TwoDimensional, Window, seen_feed,
 };
-use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
+use feedwright_gcode::canon::{Corner, Plane, Shape};
 use feedwright_ident::{Excitation, Training, train_contour};
+use feedwright_lab::motion;
 use feedwright_sim::{Machine, Run, Sink, path_steps};
 
 /// Radius and feed of eq. 11.
@@ -71,26 +72,14 @@ impl Controller<2> for Observer {
 
 /// Cuts the circle, clockwise.
 fn cut(machine: &Machine, controller: &mut dyn Controller<2>, sinks: &mut [&mut dyn Sink]) {
-    let motion = Motion {
-        line: 1,
-        kind: MotionKind::Feed,
-        start_mm: [0.0; 3],
-        end_mm: [0.0; 3],
-        shape: Shape::Arc {
-            plane: Plane::Xy,
-            center_mm: [RADIUS_MM, 0.0, 0.0],
-            turns: -1,
-        },
-        feed_mm_s: FEED_MM_S,
-        corner: Corner::ExactStop,
-        others: AuxiliaryAxes::default(),
+    let shape = Shape::Arc {
+        plane: Plane::Xy,
+        center_mm: [RADIUS_MM, 0.0, 0.0],
+        turns: -1,
     };
+    let circle = motion(1, [[0.0; 3]; 2], shape, FEED_MM_S, Corner::ExactStop);
     Run::on(machine)
-        .cut(
-            || Ok(path_steps([Canon::Motion(motion.clone())])),
-            controller,
-            sinks,
-        )
+        .cut(|| Ok(path_steps([circle.clone()])), controller, sinks)
         .expect("a circle on a machine that was checked, sinks in memory");
 }
 
@@ -121,8 +110,8 @@ fn effect_as_learnt(net: &ContourIdentifier<2>, plain: &Observer) -> [f64; INPUT
                 let (mut up, mut down) = (*sample, *sample);
                 up[axis][input] += STEP;
                 down[axis][input] -= STEP;
-                sum +=
-                    (net.predict(&up).error[axis] - net.predict(&down).error[axis]) / (2.0 * STEP);
+                let [up, down] = [up, down].map(|inputs| net.predict(&inputs).error[axis]);
+                sum += (up - down) / (2.0 * STEP);
             }
         }
         sum / (2 * samples.len()) as f64
@@ -133,11 +122,8 @@ fn errors(machine: &Machine, net: &ContourIdentifier<2>, gradient: Gradient) -> 
     let mut settings = InvertingSettings::DEFAULT;
     settings.inversion.gradient = gradient;
     let mut statistics = Statistics::new();
-    cut(
-        machine,
-        &mut TwoDimensional::untried(net.clone(), settings),
-        &mut [&mut statistics],
-    );
+    let mut controller = TwoDimensional::untried(net.clone(), settings);
+    cut(machine, &mut controller, &mut [&mut statistics]);
     format!("{:.1} / {:.1}", statistics.rms_um(), statistics.max_um())
 }
 
@@ -148,22 +134,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let effect = effect_on_the_machine(&machine, &plain);
     println!("machine, d eps / d F after 1 to {SHOWN} feed periods: {effect:.2?}\n");
     let paper = Excitation::paper();
+    let (mut both, mut without) = (paper.clone(), paper.clone());
+    both.turns = vec![-1, 1];
+    without.offset_mm = 0.0;
     let programmes = [
-        ("one sense, with offsets", paper.clone()),
-        (
-            "both senses, with offsets",
-            Excitation {
-                turns: vec![-1, 1],
-                ..paper.clone()
-            },
-        ),
-        (
-            "one sense, no offsets",
-            Excitation {
-                offset_mm: 0.0,
-                ..paper
-            },
-        ),
+        ("one sense, with offsets", paper),
+        ("both senses, with offsets", both),
+        ("one sense, no offsets", without),
     ];
     println!("| training | seed | fit | F(k) | F(k-1) | F(k-2) | sum | `printed` | `exact` |");
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
@@ -172,12 +149,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let (recording, rng) = excitation.record::<2>(&machine, seed);
             let trained = train_contour(&recording, &Training::default(), rng, &mut |_| {});
             let [now, one, two, ..] = effect_as_learnt(&trained.net, &plain);
+            let [printed, exact] = [Gradient::Printed, Gradient::Exact]
+                .map(|gradient| errors(&machine, &trained.net, gradient));
+            let (fit_um, sum) = (trained.fit_um, now + one + two);
             println!(
-                "| {name} | {seed} | {:.1} | {now:.2} | {one:.2} | {two:.2} | {:.2} | {} | {} |",
-                trained.fit_um,
-                now + one + two,
-                errors(&machine, &trained.net, Gradient::Printed),
-                errors(&machine, &trained.net, Gradient::Exact),
+                "| {name} | {seed} | {fit_um:.1} | {now:.2} | {one:.2} | {two:.2} | {sum:.2} | {printed} | {exact} |"
             );
         }
     }

@@ -38,10 +38,8 @@ struct Commands([Vec<f64>; 2]);
 
 impl Sink for Commands {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.0
-            .iter_mut()
-            .zip(row.cmd_mm)
-            .for_each(|(commands, mm)| commands.push(mm));
+        let each = self.0.iter_mut().zip(row.cmd_mm);
+        each.for_each(|(commands, mm)| commands.push(mm));
         Ok(())
     }
 }
@@ -51,31 +49,25 @@ fn excited(machine: &Machine) -> Result<[Vec<f64>; 2], Failure> {
     let mut machine = machine.clone();
     machine.axes.truncate(2);
     let text = excitation_program(&machine, ExciteOptions::default())?.text;
-    let canon: Vec<Canon> = Reader::from_text("excite.ngc", text, Settings::default())?
-        .collect::<Result<_, _>>()
-        .map_err(|error| format!("{error:?}"))?;
-    let mut commands = Commands::default();
-    Run::on(&machine).cut::<2>(
-        || Ok(path_steps(canon.clone())),
-        &mut Uncorrected,
-        &mut [&mut commands],
-    )?;
+    let read = Reader::from_text("excite.ngc", text, Settings::default())?;
+    let canon: Result<Vec<Canon>, _> = read.collect();
+    let canon = canon.map_err(|error| format!("{error:?}"))?;
+    let (mut commands, steps) = (Commands::default(), || Ok(path_steps(canon.clone())));
+    Run::on(&machine).cut::<2>(steps, &mut Uncorrected, &mut [&mut commands])?;
     Ok(commands.0)
 }
 
 /// Products of an axis: key, and what it is.
 fn products(axis: &Axis) -> [(&'static str, f64); 4] {
-    let j = axis.inertia_kg_m2;
+    let (j, kv) = (axis.inertia_kg_m2, axis.kv_nm_s_per_rad);
+    let friction_mm_s2 = axis.coulomb_friction_nm / j / axis.rad_per_mm();
     [
-        ("kp_kv_over_j_1_s2", axis.kp_1_s * axis.kv_nm_s_per_rad / j),
+        ("kp_kv_over_j_1_s2", axis.kp_1_s * kv / j),
         (
             "kv_plus_b_over_j_1_s",
-            (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j,
+            (kv + axis.viscous_friction_nm_s) / j,
         ),
-        (
-            "fc_over_j_mm_s2",
-            axis.coulomb_friction_nm / j / axis.rad_per_mm(),
-        ),
+        ("fc_over_j_mm_s2", friction_mm_s2),
         ("velocity_feedforward", axis.velocity_feedforward),
     ]
 }
@@ -93,11 +85,8 @@ struct Seen {
 
 impl Seen {
     fn add(&mut self, found: &FoundAxis, (key, is): (&str, f64)) {
-        let Some(number) = found
-            .numbers()
-            .into_iter()
-            .find(|number| number.key == key && is != 0.0)
-        else {
+        let mut numbers = found.numbers().into_iter();
+        let Some(number) = numbers.find(|number| number.key == key && is != 0.0) else {
             return;
         };
         let off = number.value / is - 1.0;
@@ -140,11 +129,11 @@ fn main() -> Result<(), Failure> {
                 record_delay_s: Some(0.0),
                 ..AxisFacts::default()
             };
-            let found = LogJob {
+            let job = LogJob {
                 facts,
                 ..LogJob::default()
-            }
-            .run(log, &())?;
+            };
+            let found = job.run(log, &())?;
             for (axis, is) in found.machine.axes.iter().zip(&machine.axes) {
                 worst_um = worst_um.max(axis.scores.grey_box.at_um[2]);
                 opened += u32::from(axis.unseen.is_open());
@@ -156,33 +145,23 @@ fn main() -> Result<(), Failure> {
                 {
                     *beside.entry(term.key()).or_insert(0) += 1;
                 }
-                seen.iter_mut()
-                    .zip(products(is))
-                    .for_each(|(seen, product)| seen.add(axis, product));
+                for (seen, product) in seen.iter_mut().zip(products(is)) {
+                    seen.add(axis, product);
+                }
             }
         }
         let products = products(&machine.axes[0]);
-        for ((key, _), seen) in products
+        let took_s = commands[0].len() as f64 * machine.period.servo_s;
+        for ((key, _), it) in products
             .iter()
             .zip(seen)
             .filter(|(_, seen)| seen.logs > 0.0)
         {
-            let Seen {
-                largest,
-                mean,
-                square,
-                half,
-                held,
-                logs,
-            } = seen;
+            let rms = 100.0 * (it.square / it.logs).sqrt();
+            let [mean, half, held] = [it.mean, it.half, it.held].map(|sum| 100.0 * sum / it.logs);
             println!(
-                "{name:<8} {key:<22} {:7.3} {:6.3} {:6.3} {:6.3} {:6.0} | {worst_um:5.2} {beside:?} {:.1} s, holds {holds}, open {opened}",
-                100.0 * largest,
-                100.0 * (square / logs).sqrt(),
-                100.0 * mean / logs,
-                100.0 * half / logs,
-                100.0 * held / logs,
-                commands[0].len() as f64 * machine.period.servo_s
+                "{name:<8} {key:<22} {:7.3} {rms:6.3} {mean:6.3} {half:6.3} {held:6.0} | {worst_um:5.2} {beside:?} {took_s:.1} s, holds {holds}, open {opened}",
+                100.0 * it.largest
             );
         }
     }

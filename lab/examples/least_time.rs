@@ -7,8 +7,9 @@
 use std::time::Instant;
 
 use feedwright::{BASELINE, Choices, FastestError, Make, Setup, fastest};
-use feedwright_gcode::canon::Corner;
-use feedwright_lab::{CONTROLLERS, contour};
+use feedwright_lab::{
+    CONTROLLERS, CORNER, LIMITED_FEED_MM_S, contour, limited_machine, linear_machine,
+};
 use feedwright_plan::Steps;
 use feedwright_sim::Machine;
 
@@ -24,20 +25,15 @@ fn main() -> Result<(), Failure> {
     if names.is_empty() {
         names = CONTOURS.map(str::to_owned).to_vec();
     }
-    let (tnv40, linear) = (
-        feedwright_lab::limited_machine(TOLERANCE_UM),
-        feedwright_lab::linear_machine(TOLERANCE_UM),
-    );
+    let (tnv40, linear) = (limited_machine(TOLERANCE_UM), linear_machine(TOLERANCE_UM));
     println!(
         "| Contour | Controller | bound s | time s | ratio | largest error um | path's um | cuts | took s |"
     );
     println!("|---|---|--:|--:|--:|--:|--:|--:|--:|");
     for name in &names {
         for (machine, controller) in [(&linear, BASELINE), (&tnv40, DEFAULT)] {
-            println!(
-                "| {name} | {controller} | {} |",
-                row(name, machine, controller)?
-            );
+            let row = row(name, machine, controller)?;
+            println!("| {name} | {controller} | {row} |");
         }
     }
     Ok(())
@@ -45,13 +41,8 @@ fn main() -> Result<(), Failure> {
 
 fn row(name: &str, machine: &Machine, controller: &str) -> Result<String, Failure> {
     let begun = Instant::now();
-    let corner = Corner::Continuous {
-        tolerance_mm: None,
-        merge_mm: None,
-    };
-    let steps = contour(name)
-        .ok_or("there is no such contour")?
-        .steps(feedwright_lab::LIMITED_FEED_MM_S, corner)?;
+    let contour = contour(name).ok_or("there is no such contour")?;
+    let steps = contour.steps(LIMITED_FEED_MM_S, CORNER)?;
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
     let choices = Choices::default();
     let entry = CONTROLLERS

@@ -6,12 +6,11 @@
 use std::time::{Duration, Instant};
 
 use feedwright::{Statistics, identified};
-use feedwright_control::{
-    Controller, Gradient, INVERSION_PERIOD_S, InvertingSettings, TwoDimensional,
-};
+use feedwright_control::{Gradient, INVERSION_PERIOD_S, InvertingSettings, TwoDimensional};
 use feedwright_ident::{Excitation, Training};
-use feedwright_lab::Workpiece;
-use feedwright_sim::{Machine, Run, RunResult, Watch};
+use feedwright_lab::compare::FEED_MM_S;
+use feedwright_lab::{CORNER, contour};
+use feedwright_sim::{Machine, Run, Watch};
 
 /// Seed of all training.
 const SEED: u64 = 1;
@@ -22,27 +21,12 @@ type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
     let machine = Machine::load("tnv40".as_ref())?;
-    let all = Workpiece::contours();
-    let circle = all
-        .iter()
-        .find(|workpiece| workpiece.name == "circle")
-        .ok_or("there is no circle")?;
-    inversions(&machine, circle)
-}
-
-/// The paper's inversion over several knots.
-fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
-    let trained = identified::<2>(
-        machine,
-        &Excitation::paper(),
-        &Training::default(),
-        SEED,
-        &mut |_| {},
-    );
-    println!(
-        "| {}, {}: knots | gradient | RMS / max, um | time, s | decision, us |",
-        machine.name, workpiece.name
-    );
+    let circle = contour("circle").ok_or("there is no circle")?;
+    let steps = circle.steps(FEED_MM_S, CORNER)?;
+    let (excitation, training) = (Excitation::paper(), Training::default());
+    let trained = identified::<2>(&machine, &excitation, &training, SEED, &mut |_| {});
+    let name = &machine.name;
+    println!("| {name}, circle: knots | gradient | RMS / max, um | time, s | decision, us |");
     println!("|--:|---|--:|--:|--:|");
     for (name, gradient) in [("printed", Gradient::Printed), ("exact", Gradient::Exact)] {
         for knots in KNOTS {
@@ -53,8 +37,11 @@ fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
             settings.servo_periods = machine.period.servo_periods(INVERSION_PERIOD_S.default);
             settings.inversion.gradient = gradient;
             let mut controller = TwoDimensional::untried(trained.net.clone(), settings);
-            let (statistics, run) = cut(machine, workpiece, &mut controller)?;
-            print!("| {knots} | {name} | {}", errors(&statistics));
+            let (mut statistics, watch) = (Statistics::new(), Timer(Instant::now()));
+            let run = Run::on(&machine).watched(&watch);
+            let run = run.cut_steps(&steps, &mut controller, &mut [&mut statistics])?;
+            let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
+            print!("| {knots} | {name} | {rms_um:.2} / {max_um:.1}");
             match run.faded_out {
                 // From then on nothing is decided.
                 Some(_) => println!(", taken out | {:.3} | |", run.time_s),
@@ -65,21 +52,6 @@ fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
     Ok(())
 }
 
-fn cut(
-    machine: &Machine,
-    workpiece: &Workpiece,
-    controller: &mut dyn Controller<2>,
-) -> Result<(Statistics, RunResult), Failure> {
-    let mut statistics = Statistics::new();
-    let watch = Timer(Instant::now());
-    let run = Run::on(machine).watched(&watch).cut_steps(
-        &workpiece.steps,
-        controller,
-        &mut [&mut statistics],
-    )?;
-    Ok((statistics, run))
-}
-
 /// Times the decisions.
 struct Timer(Instant);
 
@@ -87,8 +59,4 @@ impl Watch for Timer {
     fn clock(&self) -> Duration {
         self.0.elapsed()
     }
-}
-
-fn errors(statistics: &Statistics) -> String {
-    format!("{:.2} / {:.1}", statistics.rms_um(), statistics.max_um())
 }

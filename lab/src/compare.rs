@@ -48,7 +48,7 @@ pub use units::tune_alone;
 use units::work_on;
 pub use work::{FEED_MM_S, PartError, Workpiece};
 
-use crate::kept::Kept;
+use crate::study::Kept;
 use table::ComparisonRow;
 use tolerance::AtTolerance;
 use tuned::Tuned;

@@ -45,50 +45,68 @@ enum Outline {
     Spline(fn() -> Spline),
 }
 
+const fn named(name: &'static str, about: &'static str, outline: Outline) -> Contour {
+    Contour {
+        name,
+        about,
+        outline,
+    }
+}
+
+const SQUARE: &[[f64; 2]] = &[
+    [0.0, 0.0],
+    [20.0, 0.0],
+    [20.0, 20.0],
+    [0.0, 20.0],
+    [0.0, 0.0],
+];
+const LINES: &[[f64; 2]] = &[[0.0, 0.0], [40.0, 30.0], [60.0, 30.0]];
+const CIRCLE: Outline = Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1);
+
 /// All contours.
 pub const CONTOURS: &[Contour] = &[
-    Contour {
-        name: "circle",
-        about: "circle of radius 10 mm, from the origin, clockwise",
-        outline: Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1),
-    },
-    Contour {
-        name: "ellipse",
-        about: "half axes 20 and 10 mm",
-        outline: Outline::Curve(ellipse, ellipse_third),
-    },
-    Contour {
-        name: "eight",
-        about: "figure of eight, 30 x 20 mm",
-        outline: Outline::Curve(eight, eight_third),
-    },
-    Contour {
-        name: "star",
-        about: "five soft points, radius 8 to 16 mm",
-        outline: Outline::Curve(star, star_third),
-    },
-    Contour {
-        name: "butterfly",
-        about: "NURBS with sharp tips, 103 x 62 mm",
-        outline: Outline::Spline(butterfly),
-    },
-    Contour {
-        name: "square",
-        about: "20 x 20 mm, sharp corners",
-        outline: Outline::Polygon(&[
-            [0.0, 0.0],
-            [20.0, 0.0],
-            [20.0, 20.0],
-            [0.0, 20.0],
-            [0.0, 0.0],
-        ]),
-    },
-    Contour {
-        name: "line-line-circle",
-        about: "two lines and a circle of radius 30 mm",
-        outline: Outline::Circle(&[[0.0, 0.0], [40.0, 30.0], [60.0, 30.0]], [90.0, 30.0], 1),
-    },
+    named(
+        "circle",
+        "circle of radius 10 mm, from the origin, clockwise",
+        CIRCLE,
+    ),
+    named(
+        "ellipse",
+        "half axes 20 and 10 mm",
+        Outline::Curve(ellipse, ellipse_third),
+    ),
+    named(
+        "eight",
+        "figure of eight, 30 x 20 mm",
+        Outline::Curve(eight, eight_third),
+    ),
+    named(
+        "star",
+        "five soft points, radius 8 to 16 mm",
+        Outline::Curve(star, star_third),
+    ),
+    named(
+        "butterfly",
+        "NURBS with sharp tips, 103 x 62 mm",
+        Outline::Spline(butterfly),
+    ),
+    named(
+        "square",
+        "20 x 20 mm, sharp corners",
+        Outline::Polygon(SQUARE),
+    ),
+    named(
+        "line-line-circle",
+        "two lines and a circle of radius 30 mm",
+        Outline::Circle(LINES, [90.0, 30.0], 1),
+    ),
 ];
+
+/// Corner mode of the contours: corners are taken at the speed that the machine's limits allow.
+pub const CORNER: Corner = Corner::Continuous {
+    tolerance_mm: None,
+    merge_mm: None,
+};
 
 /// Placement of a contour: scaled, and turned about the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,23 +180,13 @@ impl Contour {
             Outline::Polygon(_) | Outline::Circle(..) => Ok(Vec::new()),
             Outline::Spline(spline) => {
                 let mut spline = spline();
-                spline
-                    .control_mm
-                    .iter_mut()
-                    .for_each(|point_mm| *point_mm = place.of(*point_mm));
-                let spline = Arc::new(spline);
+                for point_mm in &mut spline.control_mm {
+                    *point_mm = place.of(*point_mm);
+                }
                 let ends_mm = [0, spline.control_mm.len() - 1].map(|i| spline.control_mm[i]);
-                let motion = Motion {
-                    line: 1,
-                    kind: MotionKind::Feed,
-                    start_mm: ends_mm[0],
-                    end_mm: ends_mm[1],
-                    shape: Shape::Spline(spline),
-                    feed_mm_s,
-                    corner,
-                    others: AuxiliaryAxes::default(),
-                };
-                Pieces::new(std::iter::once(Canon::Motion(motion))).collect()
+                let shape = Shape::Spline(Arc::new(spline));
+                let motion = motion(1, ends_mm, shape, feed_mm_s, corner);
+                Pieces::new(std::iter::once(motion)).collect()
             }
             Outline::Curve(jet, third) => {
                 let smooth = Smooth::new(Box::new(Closed { jet, third, place }));
@@ -210,20 +218,18 @@ impl Contour {
             Outline::Circle(points, center, turns) => {
                 let mut canon = lines(points, place, feed_mm_s, corner);
                 let at = place.of(space(points[points.len() - 1]));
-                canon.push(Canon::Motion(Motion {
-                    line: points.len() as u32,
-                    kind: MotionKind::Feed,
-                    start_mm: at,
-                    end_mm: at,
-                    shape: Shape::Arc {
-                        plane: Plane::Xy,
-                        center_mm: place.of(space(center)),
-                        turns,
-                    },
+                let shape = Shape::Arc {
+                    plane: Plane::Xy,
+                    center_mm: place.of(space(center)),
+                    turns,
+                };
+                canon.push(motion(
+                    points.len() as u32,
+                    [at; 2],
+                    shape,
                     feed_mm_s,
                     corner,
-                    others: AuxiliaryAxes::default(),
-                }));
+                ));
                 Some(canon)
             }
             Outline::Curve(..) | Outline::Spline(_) => None,
@@ -236,21 +242,31 @@ fn space(point: [f64; 2]) -> [f64; 3] {
 }
 
 fn lines(points: &[[f64; 2]], place: Placement, feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
-    let ends = points.windows(2);
-    ends.zip(1..)
-        .map(|(ends, line)| {
-            Canon::Motion(Motion {
-                line,
-                kind: MotionKind::Feed,
-                start_mm: place.of(space(ends[0])),
-                end_mm: place.of(space(ends[1])),
-                shape: Shape::Line,
-                feed_mm_s,
-                corner,
-                others: AuxiliaryAxes::default(),
-            })
-        })
-        .collect()
+    let line = |(ends, line): (&[[f64; 2]], u32)| {
+        let ends_mm = [ends[0], ends[1]].map(|end| place.of(space(end)));
+        motion(line, ends_mm, Shape::Line, feed_mm_s, corner)
+    };
+    points.windows(2).zip(1..).map(line).collect()
+}
+
+/// A motion that cuts.
+pub fn motion(
+    line: u32,
+    [start_mm, end_mm]: [[f64; 3]; 2],
+    shape: Shape,
+    feed_mm_s: f64,
+    corner: Corner,
+) -> Canon {
+    Canon::Motion(Motion {
+        line,
+        kind: MotionKind::Feed,
+        start_mm,
+        end_mm,
+        shape,
+        feed_mm_s,
+        corner,
+        others: AuxiliaryAxes::default(),
+    })
 }
 
 /// Spans of a closed curve. With 16 of them, the symmetry of the curve does not mislead the first
@@ -287,10 +303,8 @@ impl Parametric for Closed {
 
     fn third(&self, span: usize, u: f64) -> [f64; 3] {
         let per_span = TAU / SPANS as f64;
-        self.place.of(scale(
-            per_span.powi(3),
-            (self.third)(per_span * (span as f64 + u)),
-        ))
+        let third = (self.third)(per_span * (span as f64 + u));
+        self.place.of(scale(per_span.powi(3), third))
     }
 }
 
@@ -330,12 +344,13 @@ fn star(a: f64) -> Jet {
     let r = 12.0 + 4.0 * cos5;
     let dr = -20.0 * sin5;
     let ddr = -100.0 * cos5;
+    let (inward, around) = (ddr - r, 2.0 * dr);
     Jet {
         position_mm: [r * cos, r * sin, 0.0],
         first: [dr * cos - r * sin, dr * sin + r * cos, 0.0],
         second: [
-            (ddr - r) * cos - 2.0 * dr * sin,
-            (ddr - r) * sin + 2.0 * dr * cos,
+            inward * cos - around * sin,
+            inward * sin + around * cos,
             0.0,
         ],
     }
@@ -346,11 +361,8 @@ fn star_third(a: f64) -> [f64; 3] {
     let (sin5, cos5) = libm::sincos(5.0 * a);
     let (r, dr, ddr, dddr) = (12.0 + 4.0 * cos5, -20.0 * sin5, -100.0 * cos5, 500.0 * sin5);
     let (inward, around) = (dddr - 3.0 * dr, 3.0 * ddr - r);
-    [
-        inward * cos - around * sin,
-        inward * sin + around * cos,
-        0.0,
-    ]
+    let (x, y) = (inward * cos - around * sin, inward * sin + around * cos);
+    [x, y, 0.0]
 }
 
 #[cfg(test)]
@@ -365,31 +377,19 @@ mod tests {
             scale: 1.5,
             turn_rad: 2.0,
         };
-        let corner = Corner::Continuous {
-            tolerance_mm: None,
-            merge_mm: None,
-        };
         for contour in CONTOURS {
-            let (here, there) = (
-                contour.steps(50.0, corner).unwrap(),
-                contour.placed_steps(place, 50.0, corner).unwrap(),
-            );
+            let here = contour.steps(50.0, CORNER).unwrap();
+            let there = contour.placed_steps(place, 50.0, CORNER).unwrap();
             let (Some(Step::Piece(a)), Some(Step::Piece(b))) = (here.first(), there.first()) else {
                 panic!("{}", contour.name)
             };
-            assert!(
-                (1.5 * a.length_mm - b.length_mm).abs() < 1e-7,
-                "{}",
-                contour.name
-            );
+            let name = contour.name;
+            assert!((1.5 * a.length_mm - b.length_mm).abs() < 1e-7, "{name}");
             for part in [0.0, 0.3, 1.0] {
                 let wanted = place.of(a.curve.at(part * a.length_mm).position_mm);
                 let found = b.curve.at(part * b.length_mm).position_mm;
-                assert!(
-                    (0..2).all(|k| (wanted[k] - found[k]).abs() < 1e-7),
-                    "{}: {wanted:?} {found:?}",
-                    contour.name
-                );
+                let is_there = (0..2).all(|k| (wanted[k] - found[k]).abs() < 1e-7);
+                assert!(is_there, "{name}: {wanted:?} {found:?}");
             }
         }
     }

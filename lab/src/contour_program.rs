@@ -4,12 +4,12 @@
 use std::fmt::Write;
 
 use feedwright::{ArcFit, FitPoint};
-use feedwright_gcode::canon::{Canon, Corner, Shape};
+use feedwright_gcode::canon::{Canon, Shape};
 use feedwright_plan::vector::Vector;
 use feedwright_plan::{Curve, PathError, Step};
 use feedwright_sim::trimmed;
 
-use crate::contour::{Contour, Placement};
+use crate::contour::{CORNER, Contour, Placement};
 
 /// Points of a curve are apart by this part of its radius, and by no more and no less than this,
 /// mm.
@@ -51,12 +51,8 @@ pub fn contour_program(
     feed_mm_s: f64,
     tolerance_mm: f64,
 ) -> Result<ContourProgram, PathError> {
-    let corner = Corner::Continuous {
-        tolerance_mm: None,
-        merge_mm: None,
-    };
-    let steps = contour.steps(feed_mm_s, corner)?;
-    let (blocks, is_exact) = match contour.lines_and_arcs(Placement::NONE, feed_mm_s, corner) {
+    let steps = contour.steps(feed_mm_s, CORNER)?;
+    let (blocks, is_exact) = match contour.lines_and_arcs(Placement::NONE, feed_mm_s, CORNER) {
         Some(canon) => (
             canon.into_iter().filter_map(exact).collect::<Vec<_>>(),
             true,

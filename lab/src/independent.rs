@@ -21,17 +21,15 @@ use feedwright::{
 };
 use feedwright_control::{Controller, Uncorrected};
 use feedwright_ident::{
-    AxisFacts, Columns, ExciteError, ExciteOptions, FoundAxis, Log, LogError, Model, ModelTerm,
-    excitation_program,
+    AxisFacts, Columns, ExciteOptions, FoundAxis, Log, Model, ModelTerm, excitation_program,
 };
 use feedwright_sim::{
-    AXIS_NAMES, Cancelled, Machine, MachineError, Measurement, Mechanism, Outcome, PlanCache, Run,
-    RunError, Watch,
+    AXIS_NAMES, Cancelled, Machine, Measurement, Mechanism, Outcome, PlanCache, Run, RunError,
+    Watch,
 };
-use miette::Diagnostic;
+use miette::Result;
 use rayon::prelude::*;
 use serde::Serialize;
-use thiserror::Error;
 
 use crate::independent_plant::IndependentPlant;
 use crate::independent_plant::linearization::LinearPart;
@@ -120,56 +118,8 @@ pub(crate) struct IndependentResult {
     pub cuts: Vec<IndependentCut>,
 }
 
-/// Why a machine was not identified.
-#[derive(Debug, Error, Diagnostic)]
-pub(crate) enum IndependentError {
-    /// Its data sheet or its machine file cannot be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Machine(#[from] MachineError),
-    /// The excitation program cannot be made.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Excite(#[from] ExciteError),
-    /// A program cannot be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Program(#[from] feedwright::JobError),
-    /// The excitation was not cut.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Run(#[from] RunError),
-    /// Its loops are unstable.
-    #[error("{machine} does not follow its excitation: diverged at {at_s:.3} s")]
-    Diverged {
-        /// The machine.
-        machine: String,
-        /// Time of the divergence, s.
-        at_s: f64,
-    },
-    /// The log is refused.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Log(#[from] LogError),
-    /// The model cannot be identified from the log.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Identification(#[from] LogJobError),
-    /// Ended from outside.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-impl IndependentError {
-    /// Returns true if the machine could not be identified and nothing else is wrong.
-    fn is_refusal(&self) -> bool {
-        matches!(
-            self,
-            Self::Diverged { .. } | Self::Log(_) | Self::Identification(LogJobError::NotFound(_))
-        )
-    }
-}
+/// A result, or why the machine cannot be identified where nothing else is wrong.
+type OrRefused<T> = std::result::Result<T, String>;
 
 /// Commands and encoder positions of the same moments, mm.
 type Samples = Rc<RefCell<Vec<[[f64; 3]; 2]>>>;
@@ -201,36 +151,25 @@ impl Mechanism for Recorded {
 }
 
 /// Returns the log that a recorder writes while the machine cuts its excitation program
-/// uncorrected.
-///
-/// # Errors
-/// Fails if the plant does not follow, or if the work is ended from outside.
+/// uncorrected. A machine that does not follow is refused.
 fn recorded(
     machine: &IndependentMachine,
     options: &IndependentOptions,
     watch: &dyn Watch,
-) -> Result<String, IndependentError> {
+) -> Result<OrRefused<String>> {
     let sheet = machine.sheet()?;
     let (name, text) = match &options.excitation {
         Some(given) => given.clone(),
-        None => (
-            "excite.ngc".to_owned(),
-            excitation_program(&sheet, ExciteOptions::default())?.text,
-        ),
+        None => {
+            let text = excitation_program(&sheet, ExciteOptions::default())?.text;
+            ("excite.ngc".to_owned(), text)
+        }
     };
-    let program = SweepProgram::from_text(
-        &name,
-        &text,
-        Length {
-            machine: &sheet,
-            limit_s: EXCITATION_S,
-        },
-    )?;
+    let program = SweepProgram::from_text(&name, &text, Length(&sheet, EXCITATION_S))?;
     let samples = Samples::default();
     let plant = |start_mm: [f64; 3], _: u64| -> Box<dyn Mechanism> {
-        let plant = IndependentPlant::new(&machine.axes, start_mm);
         Box::new(Recorded {
-            plant,
+            plant: IndependentPlant::new(&machine.axes, start_mm),
             last: [start_mm; 2],
             samples: samples.clone(),
         })
@@ -238,15 +177,14 @@ fn recorded(
     let run = Run::on(&sheet).plant(&plant).watched(watch);
     let done = run.cut_steps::<3>(&program.steps, &mut Uncorrected, &mut [])?;
     if let Outcome::Diverged { at_s } = done.outcome {
-        return Err(IndependentError::Diverged {
-            machine: machine.name.clone(),
-            at_s,
-        });
+        let name = &machine.name;
+        let why = format!("{name} does not follow its excitation: diverged at {at_s:.3} s");
+        return Ok(Err(why));
     }
     let mut text = format!("# sample_time_s = {}\n# n", sheet.period.servo_s);
-    AXIS_NAMES
-        .iter()
-        .for_each(|name| text += &format!(" {name}.cmd {name}.act"));
+    for name in AXIS_NAMES {
+        text += &format!(" {name}.cmd {name}.act");
+    }
     for (n, [command_mm, seen_mm]) in samples.borrow().iter().enumerate() {
         let _ = write!(text, "\n{n}");
         for (command, seen) in command_mm.iter().zip(seen_mm) {
@@ -254,38 +192,38 @@ fn recorded(
             let _ = write!(text, " {command:.6} {seen:.6}");
         }
     }
-    Ok(text + "\n")
+    Ok(Ok(text + "\n"))
 }
 
 impl Identified {
     /// Identifies a machine from its log alone.
-    ///
-    /// # Errors
-    /// Fails if the log does not identify the axis models, or if the work is ended from outside.
     fn of(
         machine: &IndependentMachine,
         log: &str,
         record_delay_s: Option<f64>,
         watch: &dyn Watch,
-    ) -> Result<Self, IndependentError> {
+    ) -> Result<OrRefused<Self>> {
         let name = format!("{}.log", machine.name);
-        let log = Log::from_reader(
-            Path::new(&name),
-            log.as_bytes(),
-            log.len() as u64,
-            &Columns::default(),
-            watch,
-        )?;
+        let (bytes, columns) = (log.as_bytes(), Columns::default());
+        let log = Log::from_reader(Path::new(&name), bytes, log.len() as u64, &columns, watch);
+        let log = match log {
+            Ok(log) => log,
+            Err(error) => return Ok(Err(error.to_string())),
+        };
         let facts = AxisFacts {
             record_delay_s,
             ..AxisFacts::default()
         };
-        let identified = LogJob {
+        let job = LogJob {
             name,
             facts,
             ..LogJob::default()
-        }
-        .run(log, watch)?;
+        };
+        let identified = match job.run(log, watch) {
+            Ok(identified) => identified,
+            Err(LogJobError::NotFound(cause)) => return Ok(Err(cause.to_string())),
+            Err(error) => return Err(error.into()),
+        };
         let mut file = Machine::parse("mine.toml", &machine_text(&identified, &machine.name))?;
         let sheet = machine.sheet()?;
         file.limits = sheet.limits;
@@ -294,15 +232,15 @@ impl Identified {
             axis.max_accel_mm_s2 = of_sheet.max_accel_mm_s2;
             axis.max_jerk_mm_s3 = of_sheet.max_jerk_mm_s3;
         }
-        let axes = (0..identified.machine.axes.len())
-            .map(|i| IdentifiedAxis::of(&identified, i, machine))
-            .collect();
-        Ok(Self {
+        let axes = 0..identified.machine.axes.len();
+        Ok(Ok(Self {
+            axes: axes
+                .map(|i| IdentifiedAxis::of(&identified, i, machine))
+                .collect(),
             machine: machine.clone(),
-            axes,
             file,
             models: [None, None],
-        })
+        }))
     }
 
     /// Trains the models that the cuts of programs take, as `feedwright identify --machine` does.
@@ -312,8 +250,8 @@ impl Identified {
         };
         for (axes, model) in (2..).zip(&mut self.models) {
             if programs.iter().any(|program| program.axes == axes) {
-                *model =
-                    Some(Setup::new(&self.file, &options.choices).train(best, axes, String::new()));
+                let mut setup = Setup::new(&self.file, &options.choices);
+                *model = Some(setup.train(best, axes, String::new()));
             }
         }
     }
@@ -338,58 +276,36 @@ impl IdentifiedAxis {
 
 /// Returns the linear part of an identified axis model.
 fn linear(found: &FoundAxis) -> LinearPart {
-    let values = found
-        .resolved
-        .as_ref()
-        .map_or(&found.values, |resolved| &resolved.values);
+    let resolved = found.resolved.as_ref();
+    let values = resolved.map_or(&found.values, |resolved| &resolved.values);
     let get = |term: ModelTerm| values.get(term);
-    let (product, speed_loop) = (get(ModelTerm::LoopGain), get(ModelTerm::Damping));
-    let feedforward = get(ModelTerm::VelocityFeedforward);
-    // Without an integral the loop carries its viscous friction by an error.
-    let carried = if get(ModelTerm::Integral) > 0.0 {
-        values.speed_gain_1_s()
-    } else {
-        speed_loop
-    };
-    LinearPart {
-        gain_product_1_s2: product,
-        speed_loop_1_s: speed_loop,
-        velocity_feedforward: feedforward,
+    let mut part = LinearPart {
+        gain_product_1_s2: get(ModelTerm::LoopGain),
+        speed_loop_1_s: get(ModelTerm::Damping),
+        velocity_feedforward: get(ModelTerm::VelocityFeedforward),
         command_delay_s: values.commands_late_s(),
         loop_delay_s: get(ModelTerm::LoopDelay),
-        lag_s: (carried - feedforward * values.speed_gain_1_s()) / product
-            + values.commands_late_s(),
-    }
+        lag_s: 0.0,
+    };
+    // Without an integral the loop carries its viscous friction by an error.
+    let carried = match get(ModelTerm::Integral) > 0.0 {
+        true => values.speed_gain_1_s(),
+        false => part.speed_loop_1_s,
+    };
+    let left_1_s = carried - part.velocity_feedforward * values.speed_gain_1_s();
+    part.lag_s = left_1_s / part.gain_product_1_s2 + part.command_delay_s;
+    part
 }
 
-/// A cut: figures at the tool, and RMS and largest error of the encoders, um.
-struct CutOnce {
-    tool: Figures,
-    encoders_um: [f64; 2],
-    without_model: Option<String>,
-}
+/// Figures of a cut at the tool, RMS and largest error of the encoders, um, and why there is no
+/// model.
+type CutOnce = (Figures, [f64; 2], Option<String>);
 
 /// One program on one machine with all controllers.
-fn cut_program(
+fn cut_program<const N: usize>(
     identified: &Identified,
     program: &SweepProgram,
     options: &IndependentOptions,
-    watch: &dyn Watch,
-) -> Result<Vec<IndependentCut>, Cancelled> {
-    match program.axes {
-        2 => cut_axes::<2>(identified, program, options, watch),
-        _ => cut_axes::<3>(identified, program, options, watch),
-    }
-}
-
-fn cut_axes<const N: usize>(
-    identified: &Identified,
-    program: &SweepProgram,
-    IndependentOptions {
-        controllers,
-        choices,
-        ..
-    }: &IndependentOptions,
     watch: &dyn Watch,
 ) -> Result<Vec<IndependentCut>, Cancelled>
 where
@@ -397,34 +313,29 @@ where
 {
     let plan = PlanCache::default();
     let cut = |entry: &'static Entry| {
-        let made = controller::<N>(entry, identified, choices);
+        let made = controller::<N>(entry, identified, &options.choices);
         cut_once(identified, program, entry, made, (&plan, watch))
     };
     let base = cut(&UNCORRECTED)?;
     let with = |entry: &&'static Entry| {
-        let CutOnce {
-            tool,
-            encoders_um,
-            without_model,
-        } = cut(entry)?;
+        let (corrected, encoders_um, without_model) = cut(entry)?;
         let row = SweepRow {
             program: program.name.clone(),
             machine: identified.machine.name.clone(),
             model: None,
             controller: entry.name.to_owned(),
             rigid: false,
-            uncorrected: base.tool.clone(),
-            corrected: tool,
+            uncorrected: base.0.clone(),
+            corrected,
         };
-        let (faults, encoders_um) = (row.faults(), [base.encoders_um, encoders_um]);
         Ok(IndependentCut {
+            faults: row.faults(),
             row,
-            encoders_um,
+            encoders_um: [base.1, encoders_um],
             without_model,
-            faults,
         })
     };
-    controllers.iter().map(with).collect()
+    options.controllers.iter().map(with).collect()
 }
 
 /// A controller by the machine file, and why there is no model for it.
@@ -437,11 +348,7 @@ where
     Entry: Make<N>,
 {
     let setup = || Setup::new(file, choices);
-    let made = match models
-        .get(N - 2)
-        .and_then(Option::as_ref)
-        .filter(|_| entry.name == BEST)
-    {
+    let made = match models[N - 2].as_ref().filter(|_| entry.name == BEST) {
         Some(Ok(model)) => entry.make_with::<N>(setup(), model),
         Some(Err(cause)) => return (Box::new(Uncorrected), Some(cause.to_string())),
         None => Ok(entry.make(&mut setup())),
@@ -453,99 +360,85 @@ where
 }
 
 fn cut_once<const N: usize>(
-    identified: &Identified,
+    Identified { machine, file, .. }: &Identified,
     program: &SweepProgram,
     entry: &Entry,
     (mut controller, without_model): (Box<dyn Controller<N>>, Option<String>),
     (plan, watch): (&PlanCache, &dyn Watch),
 ) -> Result<CutOnce, Cancelled> {
-    let axes = &identified.machine.axes;
     let plant = |start_mm: [f64; 3], _: u64| -> Box<dyn Mechanism> {
-        Box::new(IndependentPlant::new(axes, start_mm))
+        Box::new(IndependentPlant::new(&machine.axes, start_mm))
     };
     let mut statistics = Statistics::new();
-    let run = Run::on(&identified.file)
+    let run = Run::on(file)
         .plant(&plant)
         .laps(entry.laps)
         .sharing(plan)
         .watched(watch);
-    let done = match run.cut_steps(&program.steps, &mut *controller, &mut [&mut statistics]) {
-        Ok(done) => done,
-        Err(RunError::Cancelled(cancelled)) => return Err(cancelled),
-        Err(error) => {
-            let tool = Figures::failed(&error.to_string());
-            return Ok(CutOnce {
-                tool,
-                encoders_um: [0.0; 2],
-                without_model,
+    match run.cut_steps(&program.steps, &mut *controller, &mut [&mut statistics]) {
+        Ok(done) => {
+            let encoders_um = done.joint_error.map_or([0.0; 2], |error| {
+                [error.rms_mm, error.max_mm].map(|mm| 1e3 * mm)
             });
+            Ok((
+                Figures::of(&done, &statistics, entry),
+                encoders_um,
+                without_model,
+            ))
         }
-    };
-    let encoders_um = done.joint_error.map_or([0.0; 2], |error| {
-        [error.rms_mm, error.max_mm].map(|mm| 1e3 * mm)
-    });
-    Ok(CutOnce {
-        tool: Figures::of(&done, &statistics, entry),
-        encoders_um,
-        without_model,
-    })
+        Err(RunError::Cancelled(cancelled)) => Err(cancelled),
+        Err(error) => Ok((Figures::failed(&error.to_string()), [0.0; 2], without_model)),
+    }
 }
 
 /// Identifies machines one after the other and cuts all programs on each, programs side by side.
 /// The result does not depend on the number of threads.
 ///
 /// # Errors
-/// An end from outside.
+/// A program or a machine that cannot be read, or an end from outside.
 pub(crate) fn independent(
     machines: &[IndependentMachine],
-    programs: impl Fn(&Machine) -> Result<Vec<SweepProgram>, IndependentError>,
+    programs: impl Fn(&Machine) -> Result<Vec<SweepProgram>>,
     options: &IndependentOptions,
     watch: &dyn Watch,
-) -> Result<Vec<IndependentResult>, IndependentError> {
+) -> Result<Vec<IndependentResult>> {
     let mut results = Vec::new();
     for machine in machines {
         watch.begin(&format!("recording {}", machine.name), 1);
-        let log = recorded(machine, options, watch);
-        let identified =
-            log.and_then(|log| Identified::of(machine, &log, options.record_delay_s, watch));
-        let mut identified = match identified {
-            Ok(identified) => identified,
-            Err(error) if !error.is_refusal() => return Err(error),
-            Err(error) => {
-                let refused = Some(error.to_string());
-                results.push(IndependentResult {
-                    machine: machine.clone(),
-                    axes: vec![],
-                    refused,
-                    cuts: vec![],
-                });
-                continue;
-            }
+        let identified = match recorded(machine, options, watch)? {
+            Ok(log) => Identified::of(machine, &log, options.record_delay_s, watch)?,
+            Err(why) => Err(why),
         };
-        let programs = programs(&machine.sheet()?)?;
-        watch.begin(&format!("identifying {} for {BEST}", machine.name), 1);
-        identified.train(&programs, options);
-        watch.begin(
-            &format!("cutting on {}", machine.name),
-            programs.len() as u64,
-        );
-        let cut = |program: &SweepProgram| {
-            let cuts = cut_program(&identified, program, options, watch);
-            watch.advance(1);
-            cuts
-        };
-        let cuts = programs
-            .par_iter()
-            .map(cut)
-            .collect::<Result<Vec<_>, _>>()?
-            .concat();
-        let Identified { machine, axes, .. } = identified;
-        results.push(IndependentResult {
-            machine,
-            axes,
+        let mut result = IndependentResult {
+            machine: machine.clone(),
+            axes: vec![],
             refused: None,
-            cuts,
-        });
+            cuts: vec![],
+        };
+        match identified {
+            Err(why) => result.refused = Some(why),
+            Ok(mut identified) => {
+                let programs = programs(&machine.sheet()?)?;
+                watch.begin(&format!("identifying {} for {BEST}", machine.name), 1);
+                identified.train(&programs, options);
+                watch.begin(
+                    &format!("cutting on {}", machine.name),
+                    programs.len() as u64,
+                );
+                let cut = |program: &SweepProgram| {
+                    let cuts = match program.axes {
+                        2 => cut_program::<2>(&identified, program, options, watch),
+                        _ => cut_program::<3>(&identified, program, options, watch),
+                    };
+                    watch.advance(1);
+                    cuts
+                };
+                let cuts: Result<Vec<_>, _> = programs.par_iter().map(cut).collect();
+                result.cuts = cuts?.concat();
+                result.axes = identified.axes;
+            }
+        }
+        results.push(result);
     }
     Ok(results)
 }

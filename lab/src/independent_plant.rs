@@ -91,10 +91,8 @@ impl IndependentPlant {
 
 impl Mechanism for IndependentPlant {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
-        self.axes
-            .iter_mut()
-            .zip(command_mm)
-            .for_each(|(axis, command_mm)| axis.servo_period(command_mm));
+        let axes = self.axes.iter_mut().zip(command_mm);
+        axes.for_each(|(axis, command_mm)| axis.servo_period(command_mm));
         let each = |value: fn(&RunningAxis) -> f64| [0, 1, 2].map(|i| value(&self.axes[i]));
         Measurement {
             position_mm: each(RunningAxis::tool_mm),
@@ -106,10 +104,8 @@ impl Mechanism for IndependentPlant {
 
     /// Friction creeps and integrals go on in a rest: it is simulated as a whole.
     fn skip(&mut self, periods: u64) {
-        for _ in 0..periods {
-            self.axes
-                .iter_mut()
-                .for_each(|axis| axis.servo_period(axis.command_mm));
+        for axis in &mut self.axes {
+            (0..periods).for_each(|_| axis.servo_period(axis.command_mm));
         }
     }
 
@@ -133,11 +129,7 @@ impl IndependentAxis {
     fn places_mm(&self, state: &FeedState) -> [f64; 2] {
         let motor_mm = state.motor_rad / self.rad_per_mm();
         [
-            if self.scale.is_some() {
-                1e3 * state.table_m
-            } else {
-                motor_mm
-            },
+            self.scale.map_or(motor_mm, |_| 1e3 * state.table_m),
             motor_mm,
         ]
     }
@@ -154,16 +146,11 @@ impl RunningAxis {
         let state = axis.feed.at_rest(1e-3 * start_mm, axis.scale.is_some());
         let (sensors, seen_mm) = (axis.sensors(), axis.shown_mm(&state));
         let [command_rad, motor_rad] = [start_mm, seen_mm[1]].map(|mm| mm * axis.rad_per_mm());
+        let (cascade, motor) = (&axis.cascade, &axis.feed.motor);
         Self {
             axis,
             state,
-            drive: CascadeState::at_rest(
-                &axis.cascade,
-                command_rad,
-                motor_rad,
-                state.current_a,
-                &axis.feed.motor,
-            ),
+            drive: CascadeState::at_rest(cascade, command_rad, motor_rad, state.current_a, motor),
             sensors: [0, 1].map(|i| Late::new(sensors[i].late_periods, seen_mm[i])),
             seen_mm,
             command_mm: start_mm,
@@ -185,28 +172,19 @@ impl RunningAxis {
         let from_mm = std::mem::replace(&mut self.command_mm, command_mm);
         let speed_rad_s = (command_mm - from_mm) / cascade.servo_s() * rad_per_mm;
         for period in 1..=drive_periods {
-            let part = if cascade.interpolates {
-                f64::from(period) / f64::from(drive_periods)
-            } else {
-                1.0
-            };
+            let line = || f64::from(period) / f64::from(drive_periods);
+            let part = if cascade.interpolates { line() } else { 1.0 };
             let line_rad = (from_mm + part * (command_mm - from_mm)) * rad_per_mm;
-            let seen_rad = self.seen_mm.map(|mm| mm * rad_per_mm);
-            self.drive.drive_period(
-                &cascade,
-                DriveInput {
-                    command: [line_rad, speed_rad_s],
-                    seen_rad,
-                },
-            );
+            let input = DriveInput {
+                command: [line_rad, speed_rad_s],
+                seen_rad: self.seen_mm.map(|mm| mm * rad_per_mm),
+            };
+            self.drive.drive_period(&cascade, input);
+            let step_s = cascade.current_s / f64::from(STEPS);
             for _ in 0..current_periods {
-                let volts = self
-                    .drive
-                    .volts(&cascade, &feed.motor, self.state.current_a);
-                for _ in 0..STEPS {
-                    self.state =
-                        feed.step(&self.state, volts, cascade.current_s / f64::from(STEPS));
-                }
+                let current_a = self.state.current_a;
+                let volts = self.drive.volts(&cascade, &feed.motor, current_a);
+                (0..STEPS).for_each(|_| self.state = feed.step(&self.state, volts, step_s));
             }
             let shown_mm = self.axis.shown_mm(&self.state);
             self.seen_mm = [0, 1].map(|i| self.sensors[i].pass(shown_mm[i]));

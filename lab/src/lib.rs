@@ -11,7 +11,7 @@ mod butterfly;
 mod contour;
 mod contour_program;
 mod limited;
-mod kept;
+mod study;
 pub mod held_out;
 mod paper;
 pub mod independent_plant;
@@ -22,15 +22,14 @@ mod independent;
 pub mod command;
 
 pub use compare::held_out_work::HeldOutSeeds;
-pub use compare::overview::Claimed;
-pub use compare::table::{ComparisonRow, each_once};
-pub use compare::verdict::{LIMIT, Verdict};
+pub use compare::table::ComparisonRow;
+pub use compare::verdict::Verdict;
 pub use compare::{Comparison, ComparisonOptions, Knowledge, Tuning, Workpiece, compare};
-pub use contour::{CONTOURS, contour};
+pub use contour::{CONTOURS, CORNER, contour, motion};
 pub use contour_program::contour_program;
 pub use held_out::Variant;
 pub use held_out::machines::Class;
-pub use kept::Kept;
+
 pub use limited::{AXIS_LIMITS, LIMITED_FEED_MM_S, limited_machine, linear_machine};
 pub use never_worse::SweepOptions;
 pub use never_worse::cut::{Cutter, SweepRow};
@@ -44,3 +43,4 @@ pub use peers::model_predictive::horizon::{
     Accelerations, CommandedPeriod, CorrectionLimits, HorizonSettings, MAX_KNOTS, Predictor,
     Sensitivity,
 };
+pub use study::Kept;

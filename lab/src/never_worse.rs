@@ -23,8 +23,7 @@ pub(crate) mod generated;
 pub(crate) mod machines;
 pub(crate) mod summary;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use feedwright::{Entry, Setting, key_of};
 use feedwright_sim::{Cancelled, Machine, Watch};
@@ -33,7 +32,7 @@ use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::compare::recorded;
-use crate::kept::Kept;
+use crate::study::{Kept, each};
 use cut::{Cutter, SweepRow};
 use program::SweepProgram;
 
@@ -82,25 +81,17 @@ impl SweepOptions {
     /// Parameters of the controllers that are made for a machine.
     fn set_for(&self, model: &Machine) -> Vec<Setting> {
         let mut all = self.set.clone();
-        let known = if self.recorded {
-            recorded::known(std::slice::from_ref(model), RECORDED_SEED)
-        } else {
-            vec![]
-        };
-        for tuned in known {
-            let entry = self
-                .controllers
-                .iter()
-                .find(|entry| entry.name == tuned.controller);
-            let is_set = self
-                .set
-                .iter()
-                .any(|set| set.controller == tuned.controller);
-            all.extend(
-                entry
-                    .filter(|_| !is_set)
-                    .map_or(vec![], |&entry| tuned.settings(entry)),
-            );
+        if self.recorded {
+            for tuned in recorded::known(std::slice::from_ref(model), RECORDED_SEED) {
+                let is_it = |entry: &&&'static Entry| entry.name == tuned.controller;
+                let is_set = self
+                    .set
+                    .iter()
+                    .any(|set| set.controller == tuned.controller);
+                if let Some(entry) = self.controllers.iter().find(is_it).filter(|_| !is_set) {
+                    all.extend(tuned.settings(entry));
+                }
+            }
         }
         all
     }
@@ -138,25 +129,24 @@ pub(crate) fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJ
 /// Returns a key of everything that a cut with a controller depends on, apart from the program that
 /// makes it.
 fn key(job: &SweepJob, options: &SweepOptions, controller: &Entry) -> String {
-    let machine = serde_json::json!(*job.machine).to_string();
+    let is_it = |set: &Setting| set.controller == controller.name;
     let set: Vec<Setting> = options
         .set_for(&job.model)
         .into_iter()
-        .filter(|set| set.controller == controller.name)
+        .filter(is_it)
         .collect();
-    let (seed, set_json) = (
-        options.seed.to_le_bytes(),
-        serde_json::json!(set).to_string(),
-    );
-    let model: String;
+    let machine = serde_json::json!(*job.machine).to_string();
+    let model = serde_json::json!(*job.model).to_string();
+    let set_json = serde_json::json!(set).to_string();
+    let seed = options.seed.to_le_bytes();
+    let program = job.program.key.as_bytes();
     let mut parts = vec![
-        job.program.key.as_bytes(),
+        program,
         machine.as_bytes(),
         controller.name.as_bytes(),
         &seed,
     ];
     if !Arc::ptr_eq(&job.model, &job.machine) {
-        model = serde_json::json!(*job.model).to_string();
         parts.push(model.as_bytes());
     }
     if !set.is_empty() {
@@ -176,15 +166,6 @@ fn named(row: &SweepRow, job: &SweepJob) -> SweepRow {
     }
 }
 
-/// Results of a sweep.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Swept {
-    /// Rows in the order of the jobs, and within a job in the order of the controllers.
-    pub rows: Vec<SweepRow>,
-    /// Number of rows that were in the store.
-    pub known: usize,
-}
-
 impl SweepJob {
     /// Steps of its progress: seconds of machining.
     pub fn steps(&self) -> u64 {
@@ -192,8 +173,9 @@ impl SweepJob {
     }
 }
 
-/// Cuts all jobs on all threads, uncorrected and with each controller. The controllers of a thread
-/// serve all jobs by the same model that follow each other.
+/// Cuts all jobs on all threads, uncorrected and with each controller: rows in the order of the
+/// jobs, and within a job in the order of the controllers. The controllers of a thread serve all
+/// jobs by the same model that follow each other.
 ///
 /// # Errors
 /// An end from outside; what was cut is in the store.
@@ -202,57 +184,33 @@ pub(crate) fn sweep(
     options: &SweepOptions,
     kept: &Kept,
     watch: &dyn Watch,
-) -> Result<Swept, Cancelled> {
-    watch.begin(
-        &format!("{} cuts", jobs.len()),
-        jobs.iter().map(SweepJob::steps).sum(),
-    );
-    let (next, known) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let results = Mutex::new(vec![Vec::new(); jobs.len()]);
-    let thread = || {
-        let mut cutter: Option<Cutter> = None;
-        loop {
-            let i = next.fetch_add(1, Ordering::Relaxed);
-            let Some(job) = jobs.get(i) else { break };
-            let keys: Vec<String> = options
-                .controllers
-                .iter()
-                .map(|entry| key(job, options, entry))
-                .collect();
-            let found: Option<Vec<SweepRow>> = keys.iter().map(|key| kept.get(key)).collect();
-            let rows = match found {
-                Some(rows) => {
-                    known.fetch_add(rows.len(), Ordering::Relaxed);
-                    rows
-                }
-                None => {
-                    let cutter = match &mut cutter {
-                        Some(cutter) if cutter.is_for(&job.model) => cutter,
-                        other => other.insert(Cutter::new(&job.model, options)),
-                    };
-                    let Ok(rows) = cutter.rows(&job.program, &job.machine, watch) else {
-                        break;
-                    };
-                    keys.iter()
-                        .zip(&rows)
-                        .for_each(|(key, row)| kept.put(key, row));
-                    rows
-                }
-            };
-            let rows = rows.iter().map(|row| named(row, job)).collect();
-            results.lock().unwrap_or_else(PoisonError::into_inner)[i] = rows;
-            watch.advance(job.steps());
-        }
+) -> Result<Vec<SweepRow>, Cancelled> {
+    let steps = jobs.iter().map(SweepJob::steps).sum();
+    watch.begin(&format!("{} cuts", jobs.len()), steps);
+    let cut = |cutter: &mut Option<Cutter>, job: &SweepJob| {
+        let key = |entry: &&'static Entry| key(job, options, entry);
+        let keys: Vec<String> = options.controllers.iter().map(key).collect();
+        let found: Option<Vec<SweepRow>> = keys.iter().map(|key| kept.get(key)).collect();
+        let rows = match found {
+            Some(rows) => rows,
+            None => {
+                let cutter = match cutter {
+                    Some(cutter) if cutter.is_for(&job.model) => cutter,
+                    other => other.insert(Cutter::new(&job.model, options)),
+                };
+                let rows = cutter.rows(&job.program, &job.machine, watch)?;
+                keys.iter()
+                    .zip(&rows)
+                    .for_each(|(key, row)| kept.put(key, row));
+                rows
+            }
+        };
+        watch.advance(job.steps());
+        Ok(rows.iter().map(|row| named(row, job)).collect::<Vec<_>>())
     };
-    std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(thread))));
+    let rows = each(jobs, options.threads, || None, cut)?;
     watch.check()?;
-    Ok(Swept {
-        rows: results
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner)
-            .concat(),
-        known: known.into_inner(),
-    })
+    Ok(rows.concat())
 }
 
 #[cfg(test)]
@@ -266,10 +224,7 @@ mod tests {
     fn what_was_cut_is_not_cut_again_and_half_a_file_does_no_harm() {
         let folder = tempfile::tempdir().expect("a folder");
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        let length = Length {
-            machine: &machine,
-            limit_s: 10.0,
-        };
+        let length = Length(&machine, 10.0);
         let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
             .map(|text| SweepProgram::from_text("lines", text, length).expect("a program"));
         let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
@@ -279,7 +234,8 @@ mod tests {
         };
         let swept = |jobs: &[SweepJob]| {
             let kept = Kept::open(Some(folder.path()), "").expect("a folder");
-            sweep(jobs, &options, &kept, &()).expect("nobody ends it")
+            let rows = sweep(jobs, &options, &kept, &()).expect("nobody ends it");
+            (rows, kept.found())
         };
         let first = swept(&jobs);
         let mut files =
@@ -290,8 +246,8 @@ mod tests {
         )
         .expect("it can be written");
         let again = swept(&jobs);
-        assert_eq!((first.known, again.known), (0, 1));
-        assert_eq!(first.rows, again.rows);
+        assert_eq!((first.1, again.1), (0, 1));
+        assert_eq!(first.0, again.0);
         let renamed = SweepJob {
             program: Arc::new(SweepProgram {
                 name: "other".to_owned(),
@@ -299,10 +255,10 @@ mod tests {
             }),
             ..jobs[0].clone()
         };
-        let named = swept(&[renamed]).rows;
+        let named = swept(&[renamed]).0;
         assert_eq!(
             (named[0].program.as_str(), &named[0].uncorrected),
-            ("other", &first.rows[0].uncorrected)
+            ("other", &first.0[0].uncorrected)
         );
     }
 

@@ -13,11 +13,13 @@ use feedwright_control::{
     ContourIdentifier, Controller, Gradient, InvertingSettings, MagnitudeOnly, TwoDimensional,
     Uncorrected,
 };
-use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
+use feedwright_gcode::canon::{Canon, Corner, Plane, Shape};
 use feedwright_ident::{Excitation, TrainedContour, Training};
 use feedwright_sim::{Machine, Outcome, Run, RunError, Sink, Stages, Watch, path_steps};
 use rayon::prelude::*;
 use serde::Serialize;
+
+use crate::contour::motion;
 
 /// Radius of the circle, mm.
 const RADIUS_MM: f64 = 10.0;
@@ -90,14 +92,12 @@ pub struct Paper {
 pub fn experiment(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result<Paper, RunError> {
     watch.begin("training and cutting", seeds.len() as u64);
     let bench = Bench { machine, watch };
-    let seeds: Result<Vec<SeedResult>, RunError> = seeds
-        .par_iter()
-        .map(|&seed| {
-            let result = bench.cut_all(seed)?;
-            watch.advance(1);
-            Ok(result)
-        })
-        .collect();
+    let cut = |&seed: &u64| {
+        let result = bench.cut_all(seed)?;
+        watch.advance(1);
+        Ok(result)
+    };
+    let seeds: Result<Vec<SeedResult>, RunError> = seeds.par_iter().map(cut).collect();
     let seeds = seeds?;
     let worst = |ratio: fn(&SeedResult) -> f64| seeds.iter().map(ratio).fold(0.0, f64::max);
     Ok(Paper {
@@ -110,6 +110,9 @@ pub fn experiment(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result
         seeds,
     })
 }
+
+/// The identifier of the paper.
+type Net = ContourIdentifier<2>;
 
 /// Machine and watch that all cuts share.
 #[derive(Clone, Copy)]
@@ -142,13 +145,8 @@ impl Bench<'_> {
         self.train_on(&Excitation::paper(), &Training::default(), seed)
     }
 
-    fn train_on(
-        &self,
-        excitation: &Excitation,
-        training: &Training,
-        seed: u64,
-    ) -> TrainedContour<2> {
-        identified(self.machine, excitation, training, seed, &mut |_| {})
+    fn train_on(&self, of: &Excitation, training: &Training, seed: u64) -> TrainedContour<2> {
+        identified(self.machine, of, training, seed, &mut |_| {})
     }
 
     fn cut_uncorrected(&self) -> Result<Numbers, RunError> {
@@ -158,29 +156,18 @@ impl Bench<'_> {
         })
     }
 
-    fn cut_two_dimensional(
-        &self,
-        net: &ContourIdentifier<2>,
-        settings: InvertingSettings,
-    ) -> Result<Numbers, RunError> {
-        self.cut(
-            &mut TwoDimensional::untried(net.clone(), settings),
-            &mut [],
-            settings.inversion.rho,
-        )
+    fn cut_two_dimensional(&self, net: &Net, of: InvertingSettings) -> Result<Numbers, RunError> {
+        let mut controller = TwoDimensional::untried(net.clone(), of);
+        self.cut(&mut controller, &mut [], of.inversion.rho)
     }
 
-    fn cut_magnitude_only(
-        &self,
-        net: &ContourIdentifier<2>,
-        rho: f64,
-    ) -> Result<Numbers, RunError> {
+    fn cut_magnitude_only(&self, net: &Net, rho: f64) -> Result<Numbers, RunError> {
         self.cut(&mut magnitude_only(net, rho), &mut [], rho)
     }
 
     /// The rho at which magnitude-only takes `time_s`: bisection on its logarithm, since more rho
     /// is less time.
-    fn rho_for_time(&self, net: &ContourIdentifier<2>, time_s: f64) -> Result<f64, RunError> {
+    fn rho_for_time(&self, net: &Net, time_s: f64) -> Result<f64, RunError> {
         let (mut low, mut high) = (-6.0_f64, -1.0_f64);
         let mut rho = 0.0;
         for _ in 0..HALVINGS {
@@ -190,11 +177,7 @@ impl Bench<'_> {
             if (ratio - 1.0).abs() <= SAME_TIME {
                 break;
             }
-            if ratio > 1.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
+            *(if ratio > 1.0 { &mut low } else { &mut high }) = middle;
         }
         Ok(rho)
     }
@@ -224,7 +207,7 @@ impl Bench<'_> {
 }
 
 /// Returns the baseline.
-fn magnitude_only(net: &ContourIdentifier<2>, rho: f64) -> MagnitudeOnly<2> {
+fn magnitude_only(net: &Net, rho: f64) -> MagnitudeOnly<2> {
     MagnitudeOnly::exact(net.clone(), with_rho(InvertingSettings::DEFAULT, rho))
 }
 
@@ -240,18 +223,10 @@ fn with_gradient(mut settings: InvertingSettings, gradient: Gradient) -> Inverti
 
 /// The circle of eq. 11 as a program: clockwise about (R, 0) from the origin.
 fn circle() -> Canon {
-    Canon::Motion(Motion {
-        line: 1,
-        kind: MotionKind::Feed,
-        start_mm: [0.0; 3],
-        end_mm: [0.0; 3],
-        shape: Shape::Arc {
-            plane: Plane::Xy,
-            center_mm: [RADIUS_MM, 0.0, 0.0],
-            turns: -1,
-        },
-        feed_mm_s: FEED_MM_S,
-        corner: Corner::ExactStop,
-        others: AuxiliaryAxes::default(),
-    })
+    let shape = Shape::Arc {
+        plane: Plane::Xy,
+        center_mm: [RADIUS_MM, 0.0, 0.0],
+        turns: -1,
+    };
+    motion(1, [[0.0; 3]; 2], shape, FEED_MM_S, Corner::ExactStop)
 }

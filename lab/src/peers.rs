@@ -32,7 +32,15 @@ use feedwright::{
     Controllers, Entry, FEEDFORWARD, LQG_IDENTIFIED, MAGNITUDE_ONLY, TWO_DIMENSIONAL, UNCORRECTED,
     controller,
 };
-use feedwright_control::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
+use feedwright_control::{ACCELERATION_GAIN, FRICTION_GAIN, Schedule, VELOCITY_GAIN};
+
+/// Schedule of a decision in every `servo_periods`, with `preview` feed periods ahead.
+const fn deciding(servo_periods: u32, preview: u32) -> Schedule {
+    Schedule {
+        servo_periods,
+        preview,
+    }
+}
 
 /// PID control of the contour error, added to the command across the path.
 pub(crate) static CROSS_COUPLED: Entry = controller!(

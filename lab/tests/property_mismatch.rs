@@ -55,10 +55,7 @@ fn what_a_model_gets_wrong_is_learned_while_cutting_and_nothing_is_worse() {
         ),
     ] {
         let base = Arc::new(Machine::load(name.as_ref()).unwrap());
-        let length = Length {
-            machine: &base,
-            limit_s: 60.0,
-        };
+        let length = Length(&base, 60.0);
         let program = SweepProgram::read(&star, &Settings::default(), length).unwrap();
         let options = SweepOptions::of(vec![CONTROLLERS.find(BEST).unwrap()]);
         let mut cutter = Cutter::new(&base, &options);

@@ -145,10 +145,7 @@ fn holes() -> &'static str {
 /// Cuts a program on a machine and returns the row.
 fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
-    let length = Length {
-        machine: &machine,
-        limit_s: 60.0,
-    };
+    let length = Length(&machine, 60.0);
     let program = SweepProgram::from_text(name, text, length).unwrap();
     let row = Cutter::new(&machine, &options())
         .rows(&program, &machine, &())

@@ -15,8 +15,6 @@ mod cut;
 mod identification_log;
 #[path = "../../crates/feedwright/tests/common/json_keys.rs"]
 mod json_keys;
-#[path = "../examples/noise_levels/levels.rs"]
-mod levels;
 #[path = "../../crates/feedwright/tests/common/made_up_report.rs"]
 mod made_up_report;
 #[path = "../../crates/plan/tests/common/missing.rs"]
@@ -25,12 +23,8 @@ mod missing;
 mod programs;
 #[path = "../../crates/feedwright/tests/common/python.rs"]
 mod python;
-#[path = "../examples/noise_levels/show.rs"]
-mod show;
 #[path = "../../crates/ident/tests/common/sweep.rs"]
 mod sweep;
-#[path = "../examples/tables/table.rs"]
-mod table;
 
 mod conformance_adaptation;
 mod conformance_command;

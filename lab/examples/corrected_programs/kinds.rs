@@ -87,22 +87,17 @@ fn arcs(at: impl Fn(f64) -> [f64; 2]) -> String {
         }
     };
     let points: Vec<FitPoint> = (0..=4000).map(point).collect();
-    let mut text = format!("G0 X{:.5} Y{:.5}\n", points[0].at_mm[0], points[0].at_mm[1]);
+    let [x, y, _] = points[0].at_mm;
+    let mut text = format!("G0 X{x:.5} Y{y:.5}\n");
     for motion in ArcFit::new(&points, 1e-4, 1e5).motions() {
         let ([x0, y0, _], [x, y, _]) = (motion.start_mm, motion.end_mm);
         let _ = match motion.shape {
             Shape::Arc {
-                center_mm: [cx, cy, _],
-                turns,
-                ..
+                center_mm, turns, ..
             } => {
                 let code = if turns > 0 { "G3" } else { "G2" };
-                writeln!(
-                    text,
-                    "{code} X{x:.5} Y{y:.5} I{:.5} J{:.5}",
-                    cx - x0,
-                    cy - y0
-                )
+                let [i, j] = [center_mm[0] - x0, center_mm[1] - y0];
+                writeln!(text, "{code} X{x:.5} Y{y:.5} I{i:.5} J{j:.5}")
             }
             _ => writeln!(text, "G1 X{x:.5} Y{y:.5}"),
         };
@@ -112,33 +107,25 @@ fn arcs(at: impl Fn(f64) -> [f64; 2]) -> String {
 
 fn smooth(draw: &mut Draw) -> (String, String) {
     let (radius, other) = (draw.between(5.0, 25.0), draw.between(0.4, 0.9));
+    let around = |t: f64| (libm::cos(TAU * t), libm::sin(TAU * t));
     match draw.one_of(4) {
-        0 => (
-            format!(
+        0 => {
+            let text = format!(
                 "G0 X{radius:.3} Y0\nG3 X{radius:.3} Y0 I{:.3} J0\n",
                 -radius
-            ),
-            format!("circle {radius:.0} mm"),
-        ),
+            );
+            (text, format!("circle {radius:.0} mm"))
+        }
         1 => {
-            let at = |t: f64| {
-                [
-                    radius * libm::cos(TAU * t),
-                    other * radius * libm::sin(TAU * t),
-                ]
-            };
+            let at = |t: f64| [radius * around(t).0, other * radius * around(t).1];
             (
                 arcs(at),
                 format!("ellipse {radius:.0} x {:.0} mm", other * radius),
             )
         }
         2 => {
-            let at = |t: f64| {
-                [
-                    radius * libm::sin(TAU * t),
-                    other * radius * libm::sin(2.0 * TAU * t),
-                ]
-            };
+            let twice = |t: f64| libm::sin(2.0 * TAU * t);
+            let at = |t: f64| [radius * around(t).1, other * radius * twice(t)];
             (arcs(at), format!("eight {radius:.0} mm"))
         }
         _ => {
@@ -146,7 +133,7 @@ fn smooth(draw: &mut Draw) -> (String, String) {
             let petals = 3 + draw.one_of(4);
             let at = |t: f64| {
                 let r = radius * (1.0 + depth * libm::cos(petals as f64 * TAU * t));
-                [r * libm::cos(TAU * t), r * libm::sin(TAU * t)]
+                [r * around(t).0, r * around(t).1]
             };
             (chords(at, 0.05), format!("rose {petals} of {radius:.0} mm"))
         }
@@ -155,151 +142,55 @@ fn smooth(draw: &mut Draw) -> (String, String) {
 
 /// Corners of a rounded rectangle around the origin, counter-clockwise, from the middle of its
 /// lower side.
-fn rounded_rectangle(half: [f64; 2], radius: f64) -> String {
-    let [a, b] = half;
+fn rounded_rectangle([a, b]: [f64; 2], radius: f64) -> String {
     let r = radius.min(0.9 * a.min(b));
+    let (p, q) = (a - r, b - r);
+    let (na, nb, np, nq, nr) = (-a, -b, -p, -q, -r);
     format!(
-        "G1 X{:.3} Y{:.3}\nG3 X{:.3} Y{:.3} I0 J{r:.3}\nG1 Y{:.3}\nG3 X{:.3} Y{:.3} I{:.3} J0\nG1 X{:.3}\nG3 X{:.3} Y{:.3} I0 J{:.3}\n\
-         G1 Y{:.3}\nG3 X{:.3} Y{:.3} I{r:.3} J0\nG1 X0\n",
-        a - r,
-        -b,
-        a,
-        r - b,
-        b - r,
-        a - r,
-        b,
-        -r,
-        r - a,
-        -a,
-        b - r,
-        -r,
-        r - b,
-        r - a,
-        -b
+        "G1 X{p:.3} Y{nb:.3}\nG3 X{a:.3} Y{nq:.3} I0 J{r:.3}\nG1 Y{q:.3}\nG3 X{p:.3} Y{b:.3} I{nr:.3} J0\n\
+         G1 X{np:.3}\nG3 X{na:.3} Y{q:.3} I0 J{nr:.3}\nG1 Y{nq:.3}\nG3 X{np:.3} Y{nb:.3} I{r:.3} J0\nG1 X0\n"
     )
 }
 
 fn rounded(draw: &mut Draw) -> (String, String) {
     let (side, radius) = (draw.between(20.0, 200.0), draw.between(2.0, 15.0));
-    let text = format!(
-        "G0 X0 Y{:.3}\n{}",
-        -0.5 * side,
-        rounded_rectangle([0.5 * side; 2], radius.min(0.4 * side))
-    );
-    (
-        text,
-        format!("square {side:.0} mm R{:.0}", radius.min(0.4 * side)),
-    )
+    let radius = radius.min(0.4 * side);
+    let rectangle = rounded_rectangle([0.5 * side; 2], radius);
+    let text = format!("G0 X0 Y{:.3}\n{rectangle}", -0.5 * side);
+    (text, format!("square {side:.0} mm R{radius:.0}"))
 }
 
 /// Strokes of letters in a box of 10 by 14: a start, then ends of lines, and of arcs with the
-/// center relative to their start (direction 1 is counter-clockwise).
-type Stroke = &'static [(f64, f64, f64, f64, i8)];
-const LETTERS: [(char, &[Stroke]); 8] = [
-    (
-        'A',
-        &[
-            &[
-                (0.0, 0.0, 0.0, 0.0, 0),
-                (5.0, 14.0, 0.0, 0.0, 0),
-                (10.0, 0.0, 0.0, 0.0, 0),
-            ],
-            &[(2.0, 5.6, 0.0, 0.0, 0), (8.0, 5.6, 0.0, 0.0, 0)],
-        ],
-    ),
-    (
-        'B',
-        &[&[
-            (0.0, 0.0, 0.0, 0.0, 0),
-            (0.0, 14.0, 0.0, 0.0, 0),
-            (5.0, 14.0, 0.0, 0.0, 0),
-            (5.0, 7.0, 0.0, -3.5, -1),
-            (0.0, 7.0, 0.0, 0.0, 0),
-            (5.0, 7.0, 0.0, 0.0, 0),
-            (5.0, 0.0, 0.0, -3.5, -1),
-            (0.0, 0.0, 0.0, 0.0, 0),
-        ]],
-    ),
-    (
-        'D',
-        &[&[
-            (0.0, 0.0, 0.0, 0.0, 0),
-            (0.0, 14.0, 0.0, 0.0, 0),
-            (2.0, 14.0, 0.0, 0.0, 0),
-            (2.0, 0.0, 0.0, -7.0, -1),
-            (0.0, 0.0, 0.0, 0.0, 0),
-        ]],
-    ),
-    (
-        'E',
-        &[
-            &[
-                (9.0, 14.0, 0.0, 0.0, 0),
-                (0.0, 14.0, 0.0, 0.0, 0),
-                (0.0, 0.0, 0.0, 0.0, 0),
-                (9.0, 0.0, 0.0, 0.0, 0),
-            ],
-            &[(0.0, 7.0, 0.0, 0.0, 0), (7.0, 7.0, 0.0, 0.0, 0)],
-        ],
-    ),
-    (
-        'N',
-        &[&[
-            (0.0, 0.0, 0.0, 0.0, 0),
-            (0.0, 14.0, 0.0, 0.0, 0),
-            (9.0, 0.0, 0.0, 0.0, 0),
-            (9.0, 14.0, 0.0, 0.0, 0),
-        ]],
-    ),
-    (
-        'O',
-        &[&[
-            (10.0, 9.0, 0.0, 0.0, 0),
-            (0.0, 9.0, -5.0, 0.0, 1),
-            (0.0, 5.0, 0.0, 0.0, 0),
-            (10.0, 5.0, 5.0, 0.0, 1),
-            (10.0, 9.0, 0.0, 0.0, 0),
-        ]],
-    ),
-    (
-        'U',
-        &[&[
-            (0.0, 14.0, 0.0, 0.0, 0),
-            (0.0, 5.0, 0.0, 0.0, 0),
-            (10.0, 5.0, 5.0, 0.0, 1),
-            (10.0, 14.0, 0.0, 0.0, 0),
-        ]],
-    ),
-    (
-        'C',
-        &[&[
-            (10.0, 11.0, 0.0, 0.0, 0),
-            (0.0, 9.0, -5.0, -2.0, 1),
-            (0.0, 5.0, 0.0, 0.0, 0),
-            (10.0, 3.0, 5.0, 0.0, 1),
-        ]],
-    ),
+/// center relative to their start, and a direction (1 is counter-clockwise).
+const LETTERS: [(char, &str); 7] = [
+    ('A', "0,0 5,14 10,0;2,5.6 8,5.6"),
+    ('B', "0,0 0,14 5,14 5,7,0,-3.5,-1 0,7 5,7 5,0,0,-3.5,-1 0,0"),
+    ('D', "0,0 0,14 2,14 2,0,0,-7,-1 0,0"),
+    ('E', "9,14 0,14 0,0 9,0;0,7 7,7"),
+    ('N', "0,0 0,14 9,0 9,14"),
+    ('O', "10,9 0,9,-5,0,1 0,5 10,5,5,0,1 10,9"),
+    ('U', "0,14 0,5 10,5,5,0,1 10,14"),
 ];
 
 fn letters(draw: &mut Draw) -> (String, String) {
     let scale = draw.between(8.0, 30.0) / 14.0;
     let (mut text, mut word) = (String::new(), String::new());
     for place in 0..4 {
-        let (letter, strokes) = LETTERS[draw.one_of(7)];
+        let (letter, strokes) = LETTERS[draw.one_of(LETTERS.len())];
         word.push(letter);
-        for stroke in strokes {
+        for stroke in strokes.split(';') {
             let x0 = 13.0 * f64::from(place);
-            for (n, (x, y, i, j, turns)) in stroke.iter().enumerate() {
-                let code = if n == 0 {
-                    "G0"
-                } else {
-                    ["G2", "G1", "G3"][(turns + 1) as usize]
+            for (n, point) in stroke.split(' ').enumerate() {
+                let numbers: Vec<f64> = point.split(',').filter_map(|n| n.parse().ok()).collect();
+                let (x, y) = (scale * (x0 + numbers[0]), scale * numbers[1]);
+                let _ = match numbers[2..] {
+                    [i, j, turns] => {
+                        let code = if turns > 0.0 { "G3" } else { "G2" };
+                        let (i, j) = (scale * i, scale * j);
+                        writeln!(text, "{code} X{x:.3} Y{y:.3} I{i:.3} J{j:.3}")
+                    }
+                    _ => writeln!(text, "G{} X{x:.3} Y{y:.3}", u8::from(n > 0)),
                 };
-                let _ = write!(text, "{code} X{:.3} Y{:.3}", scale * (x0 + x), scale * y);
-                if *turns != 0 {
-                    let _ = write!(text, " I{:.3} J{:.3}", scale * i, scale * j);
-                }
-                text.push('\n');
             }
         }
     }
@@ -310,19 +201,14 @@ fn spline(draw: &mut Draw) -> (String, String) {
     let radius = draw.between(8.0, 30.0);
     let terms: Vec<[f64; 3]> = (2..6)
         .map(|k| {
-            let most = 0.5 / (f64::from(k) * f64::from(k));
-            [
-                f64::from(k),
-                draw.between(-most, most),
-                draw.between(0.0, TAU),
-            ]
+            let k = f64::from(k);
+            let most = 0.5 / (k * k);
+            [k, draw.between(-most, most), draw.between(0.0, TAU)]
         })
         .collect();
     let at = |t: f64| {
-        let bends: f64 = terms
-            .iter()
-            .map(|[k, size, phase]| size * libm::cos(k * TAU * t + phase))
-            .sum();
+        let bend = |[k, size, phase]: &[f64; 3]| size * libm::cos(k * TAU * t + phase);
+        let bends: f64 = terms.iter().map(bend).sum();
         let r = radius * (1.0 + bends);
         [r * libm::cos(TAU * t), r * libm::sin(TAU * t)]
     };
@@ -330,43 +216,25 @@ fn spline(draw: &mut Draw) -> (String, String) {
 }
 
 fn pocket(draw: &mut Draw) -> (String, String) {
-    let (half, step) = (
-        [draw.between(10.0, 35.0), draw.between(8.0, 25.0)],
-        draw.between(1.5, 4.0),
-    );
+    let half = [draw.between(10.0, 35.0), draw.between(8.0, 25.0)];
+    let step = draw.between(1.5, 4.0);
     let radius = draw.between(1.5, 6.0);
     let rings = 3 + draw.one_of(3);
     let mut text = String::new();
     for depth in 1..=2 {
         let inner = |ring: usize| half.map(|mm| (mm - step * ring as f64).max(2.0));
-        let start = inner(rings - 1);
-        let _ = writeln!(
-            text,
-            "G0 Z5\nG0 X0 Y{:.3}\nG0 Z{}\nG1 Z-{}",
-            -start[1],
-            2 - depth,
-            depth
-        );
+        let (y, above) = (-inner(rings - 1)[1], 2 - depth);
+        let _ = writeln!(text, "G0 Z5\nG0 X0 Y{y:.3}\nG0 Z{above}\nG1 Z-{depth}");
         for ring in (0..rings).rev() {
             let [a, b] = inner(ring);
             let r = (radius + step * (rings - 1 - ring) as f64).min(0.9 * a.min(b));
-            let _ = write!(
-                text,
-                "G1 Y{:.3}\n{}",
-                -b,
-                rounded_rectangle([a, b], r.min(12.0))
-            );
+            let rectangle = rounded_rectangle([a, b], r.min(12.0));
+            let _ = write!(text, "G1 Y{:.3}\n{rectangle}", -b);
         }
         text.push_str("G0 Z5\n");
     }
-    (
-        text,
-        format!(
-            "pocket {:.0} x {:.0} mm, {rings} rings",
-            2.0 * half[0],
-            2.0 * half[1]
-        ),
-    )
+    let [x, y] = half.map(|mm| 2.0 * mm);
+    (text, format!("pocket {x:.0} x {y:.0} mm, {rings} rings"))
 }
 
 fn steps(draw: &mut Draw) -> (String, String) {

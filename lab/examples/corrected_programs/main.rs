@@ -18,18 +18,20 @@
 //! that there is. With `--corpus FOLDER` N programs are drawn from the files of that folder, among
 //! those that cut in X, Y or Z alone and cut for no more than [`LONGEST_S`] at their feedrates.
 //! With `--wrong` the correction uses a model whose inertia, friction and speed-loop gain are 20 %
-//! off, each up or down. With `--one-wrong` only one of them is off.
+//! off, each up or down. With `--one-wrong` only one of them is off. With `--learned` the correction
+//! learns from logs (`learned.rs`).
 
 mod kinds;
+mod learned;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use feedwright::command::FilesToCheck;
 use feedwright::{CorrectJob, ExportedCut, TARGETS, deterministic};
 use feedwright_gcode::{Dialect, Program, Reader, Settings};
 use feedwright_plan::vector::{Vector, norm, sub};
 use feedwright_plan::{Pieces, Step};
-use feedwright_sim::{Axis, Machine, Row, Sink, Squareness};
+use feedwright_sim::{Machine, Row, Sink, Squareness};
 
 use kinds::{KINDS, drawn};
 use rand::SeedableRng;
@@ -81,15 +83,27 @@ struct Measured {
     blocks: u64,
 }
 
-fn steps(text: &str, dialect: Dialect) -> Vec<Step> {
+/// The path of a program.
+fn steps(text: &str, dialect: Option<Dialect>) -> Vec<Step> {
     let settings = Settings {
-        dialect: Some(dialect),
+        dialect,
         ..Settings::default()
     };
     let reader = Reader::from_text("part.ngc", text, settings).expect("a program");
-    Pieces::new(reader.map_while(Result::ok))
-        .map_while(Result::ok)
-        .collect()
+    let pieces = Pieces::new(reader.map_while(Result::ok));
+    pieces.map_while(Result::ok).collect()
+}
+
+/// Cuts of programs without feedback, whose errors are those to the original path.
+fn exported<'a>(machine: &'a Machine, original: &'a [Step], axes: usize) -> ExportedCut<'a> {
+    ExportedCut {
+        machine,
+        error: None,
+        stages: TARGETS[0].stages(machine),
+        original,
+        axes,
+        watch: &(),
+    }
 }
 
 /// Cuts a program over phases of the disturbance and seeds of the noise.
@@ -101,19 +115,11 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
         let servo_s = machine.period.servo_s;
         let phase_s = cut as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0);
         let periods = (phase_s / servo_s).round();
-        let stages = TARGETS[0].stages(&machine);
-        let exported = ExportedCut {
-            machine: &machine,
-            error: None,
-            stages,
-            original,
-            axes,
-            watch: &(),
-        };
         let mut errors = Errors {
             skipped: periods as usize,
             rows: Vec::new(),
         };
+        let exported = exported(&machine, original, axes);
         let now = exported
             .once(program, periods * servo_s, &mut [&mut errors])
             .expect("a cut");
@@ -128,19 +134,13 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
         if errors.len() < cuts.len() {
             continue;
         }
-        let mean: Vector =
-            std::array::from_fn(|i| errors.iter().map(|error| error[i]).sum::<f64>() / CUTS as f64);
-        let variance = errors
-            .iter()
-            .map(|error| norm(sub(*error, mean)).powi(2))
-            .sum::<f64>()
-            / (CUTS - 1) as f64;
+        let sum = |i: usize| errors.iter().map(|error| error[i]).sum::<f64>();
+        let mean: Vector = std::array::from_fn(|i| sum(i) / CUTS as f64);
+        let off = errors.iter().map(|error| norm(sub(*error, mean)).powi(2));
+        variances += off.sum::<f64>() / (CUTS - 1) as f64;
         measured.max_um = measured.max_um.max(1e3 * norm(mean));
-        (squares, variances, count) = (
-            squares + norm(mean).powi(2),
-            variances + variance,
-            count + 1.0,
-        );
+        squares += norm(mean).powi(2);
+        count += 1.0;
     }
     measured.rest_um = 1e3 * (variances / count).sqrt();
     measured.rms_um = 1e3 * ((squares - variances / CUTS as f64).max(0.0) / count).sqrt();
@@ -149,47 +149,39 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
 
 /// A machine whose encoders see all of it.
 fn seen_by_encoders(machine: &Machine) -> Machine {
-    let axis = |axis: &Axis| Axis {
-        scale_um_m: 0.0,
-        pitch_error_um: 0.0,
-        ..*axis
-    };
-    Machine {
-        axes: machine.axes.iter().map(axis).collect(),
-        geometry: Squareness::default(),
-        ..machine.clone()
+    let mut machine = machine.clone();
+    for axis in &mut machine.axes {
+        (axis.scale_um_m, axis.pitch_error_um) = (0.0, 0.0);
     }
+    machine.geometry = Squareness::default();
+    machine
 }
 
 /// The machine with inertia, friction and gain of the speed loop times these factors; gains of the
 /// position loop, feedforward and delays stay.
-fn wrong(machine: &Machine, factors: [f64; 3]) -> Machine {
-    let factor = |which: usize| factors[which];
-    let axis = |axis: &Axis| Axis {
-        inertia_kg_m2: axis.inertia_kg_m2 * factor(0),
-        coulomb_friction_nm: axis.coulomb_friction_nm * factor(1),
-        viscous_friction_nm_s: axis.viscous_friction_nm_s * factor(1),
-        stribeck_nm: axis.stribeck_nm * factor(1),
-        kv_nm_s_per_rad: axis.kv_nm_s_per_rad * factor(2),
-        ..*axis
-    };
-    Machine {
-        axes: machine.axes.iter().map(axis).collect(),
-        ..machine.clone()
+fn wrong(machine: &Machine, [inertia, friction, gain]: [f64; 3]) -> Machine {
+    let mut machine = machine.clone();
+    for axis in &mut machine.axes {
+        axis.inertia_kg_m2 *= inertia;
+        axis.coulomb_friction_nm *= friction;
+        axis.viscous_friction_nm_s *= friction;
+        axis.stribeck_nm *= friction;
+        axis.kv_nm_s_per_rad *= gain;
     }
+    machine
 }
 
 /// Every one of the three 20 % off, up or down.
 fn all_wrong() -> Vec<[f64; 3]> {
+    let factor = |way: usize, bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 };
     (0..8)
-        .map(|way| [0, 1, 2].map(|bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 }))
+        .map(|way| [0, 1, 2].map(|bit| factor(way, bit)))
         .collect()
 }
 
 /// One of the three 20 % off, up or down.
 fn one_wrong() -> Vec<[f64; 3]> {
-    let one =
-        |which: usize, factor: f64| std::array::from_fn(|k| if k == which { factor } else { 1.0 });
+    let one = |which: usize, by: f64| [0, 1, 2].map(|k| if k == which { by } else { 1.0 });
     (0..3)
         .flat_map(|which| [one(which, 0.8), one(which, 1.2)])
         .collect()
@@ -202,43 +194,31 @@ type Ratios = [f64; 5];
 /// Corrects a program, cuts both and prints a line. None where no program was written.
 fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) -> Option<Ratios> {
     let program = Program::from_text("part.ngc", text);
+    let refused = |why: &str| {
+        println!("{:<9} {name:<32} {why}", machine.name);
+        None
+    };
     let Ok(summary) = program.check(Settings::default()) else {
-        println!("{:<9} {name:<32} is refused", machine.name);
-        return None;
+        return refused("is refused");
     };
     let axes = if summary.moves[2] { 3 } else { 2 };
     let mut job = CorrectJob::new(program, machine.clone(), &TARGETS[0]);
     job.believed = believed;
     let outcome = match job.run(&()) {
         Ok(outcome) => outcome,
-        Err(error) => {
-            println!("{:<9} {name:<32} {error}", machine.name);
-            return None;
-        }
+        Err(error) => return refused(&error.to_string()),
     };
     let Some(corrected) = outcome.program() else {
-        println!(
-            "{:<9} {name:<32} not written: {}",
-            machine.name,
-            outcome.refusal.clone().unwrap_or_default()
-        );
-        return None;
+        let why = outcome.refusal.clone().unwrap_or_default();
+        return refused(&format!("not written: {why}"));
     };
     // What is written out of a Fanuc program need not look like one.
-    let [original, corrected] = [text, corrected].map(|text| steps(text, summary.dialect.0));
+    let [original, corrected] = [text, corrected].map(|text| steps(text, Some(summary.dialect.0)));
     let was = measured(machine, &original, &original, axes);
     let is = measured(machine, &original, &corrected, axes);
+    let quiet = deterministic(machine);
     let known = |program: &[Step]| {
-        let machine = deterministic(machine);
-        let stages = TARGETS[0].stages(&machine);
-        let cut = ExportedCut {
-            machine: &machine,
-            error: None,
-            stages,
-            original: &original,
-            axes,
-            watch: &(),
-        };
+        let cut = exported(&quiet, &original, axes);
         cut.once(program, 0.0, &mut []).expect("a cut")
     };
     let (known_was, known_is) = (known(&original), known(&corrected));
@@ -249,31 +229,26 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
         known_is.rms_um / known_was.rms_um,
         known_is.max_um / known_was.max_um,
     ];
+    let [rms, max, time, known_rms, known_max] = ratios;
     println!(
-        "{:<9} {name:<32} {:>6.2} {:>6.2} {:>6.3} ({:.3})  {:>6.1} {:>6.1} {:>6.3} ({:.3})  {:>5.2} {:>5.1}  {:>8.2} {:>6.3} {:>6} {:>6}  {:>3}/{}",
+        "{:<9} {name:<32} {:>6.2} {:>6.2} {rms:>6.3} ({known_rms:.3})  {:>6.1} {:>6.1} {max:>6.3} ({known_max:.3})  {:>5.2} {:>5.1}  {:>8.2} \
+         {time:>6.3} {:>6} {:>6}  {:>3}/{}",
         machine.name,
         was.rms_um,
         is.rms_um,
-        ratios[0],
-        ratios[3],
         was.max_um,
         is.max_um,
-        ratios[1],
-        ratios[4],
         is.rest_um,
         is.uncut_um,
         was.time_s,
-        ratios[2],
         was.blocks,
         is.blocks,
         outcome.stretches_changed,
         outcome.stretches,
     );
     for stretch in &outcome.unchanged {
-        println!(
-            "          lines {} to {}: {}",
-            stretch.lines[0], stretch.lines[1], stretch.reason
-        );
+        let [from, to] = stretch.lines;
+        println!("          lines {from} to {to}: {}", stretch.reason);
     }
     Some(ratios)
 }
@@ -282,14 +257,9 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
 /// as 1.
 fn print_spread(name: &str, ratios: &[Option<Ratios>]) {
     print!("{name:<42}");
-    for (which, what) in ["RMS", "largest", "time", "(RMS)", "(largest)"]
-        .into_iter()
-        .enumerate()
-    {
-        let mut of: Vec<f64> = ratios
-            .iter()
-            .map(|ratios| ratios.map_or(1.0, |ratios| ratios[which]))
-            .collect();
+    for (which, what) in (0..).zip(["RMS", "largest", "time", "(RMS)", "(largest)"]) {
+        let ratio = |ratios: &Option<Ratios>| ratios.map_or(1.0, |ratios: Ratios| ratios[which]);
+        let mut of: Vec<f64> = ratios.iter().map(ratio).collect();
         of.sort_by(f64::total_cmp);
         let at = |part: f64| of[((of.len() - 1) as f64 * part).round() as usize];
         print!("  {what} {:.3} {:.3} {:.3}", at(0.5), at(0.9), at(1.0));
@@ -316,32 +286,25 @@ fn is_cut(text: &str) -> bool {
         Step::Piece(piece) if piece.cutting => piece.length_mm / piece.feed_mm_s,
         _ => 0.0,
     };
+    let steps = || steps(text, Some(summary.dialect.0));
     summary.feed_mm > 0.0
         && !summary.moves_others
-        && steps(text, summary.dialect.0)
-            .iter()
-            .map(time_s)
-            .sum::<f64>()
-            <= LONGEST_S
+        && steps().iter().map(time_s).sum::<f64>() <= LONGEST_S
 }
 
-/// A file as a program: group, name and text.
-fn program_of(path: &Path) -> (String, String, String) {
-    let name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
+/// Group, name and text of a program.
+type Named = (String, String, String);
+
+/// A file as a program.
+fn program_of(path: &Path) -> Named {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let text = std::fs::read(path).expect("a file");
-    (
-        "files".to_owned(),
-        name,
-        String::from_utf8_lossy(&text).into_owned(),
-    )
+    let text = String::from_utf8_lossy(&text).into_owned();
+    ("files".to_owned(), name.into_owned(), text)
 }
 
 /// Returns `count` programs drawn from the files of a folder.
-fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<(String, String, String)> {
+fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<Named> {
     let found = FilesToCheck::find(&[folder.to_owned()]);
     let programs = found.files.iter().map(|path| program_of(path));
     let mut fitting: Vec<_> = programs.filter(|(_, _, text)| is_cut(text)).collect();
@@ -355,75 +318,72 @@ fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<(String, String, S
     fitting
 }
 
-/// The programs that are asked for: group, name and text.
-fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, String)> {
-    let parts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"));
+/// The programs that are asked for.
+fn programs(arguments: &[String], files: &[String]) -> Vec<Named> {
     if let Some(seed) = value(arguments, "--drawn") {
         let seed: u64 = seed.parse().expect("a seed");
-        let count: u64 =
-            value(arguments, "--count").map_or(3, |count| count.parse().expect("a count"));
+        let count = value(arguments, "--count").map_or(3, |count| count.parse().expect("a count"));
         if let Some(folder) = value(arguments, "--corpus") {
             return drawn_files(folder.as_ref(), seed, count as usize);
         }
-        let of_kind = |kind: &str| -> Vec<(String, String, String)> {
-            let one = |number: u64| {
-                let (text, what) = drawn(kind, 100 * seed + number);
-                (kind.to_owned(), what, text)
-            };
-            (0..count).map(one).collect()
+        let one = |kind: &'static str, number: u64| {
+            let (text, what) = drawn(kind, 100 * seed + number);
+            (kind.to_owned(), what, text)
         };
+        let of_kind = |kind| (0..count).map(move |number| one(kind, number));
         return KINDS.into_iter().flat_map(of_kind).collect();
     }
     if !files.is_empty() {
         return files.iter().map(|path| program_of(path.as_ref())).collect();
     }
-    let paths: Vec<PathBuf> = ["circle", "ellipse", "eight", "star", "square"]
-        .map(|name| parts.join(name).with_extension("ngc"))
+    let parts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"));
+    let part = |name: &str| program_of(&parts.join(name).with_extension("ngc"));
+    let mut all = ["circle", "ellipse", "eight", "star", "square"]
+        .map(part)
         .to_vec();
-    let own = OWN.map(|(name, text)| ("files".to_owned(), name.to_owned(), text.to_owned()));
-    paths
-        .iter()
-        .map(|path| program_of(path))
-        .chain(own)
-        .collect()
+    all.extend(OWN.map(|(name, text)| ("files".to_owned(), name.to_owned(), text.to_owned())));
+    all
 }
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(at) = arguments
+        .iter()
+        .position(|argument| argument == "--learned")
+    {
+        arguments.remove(at);
+        return learned::learned(arguments);
+    }
     let is_value =
         |k: usize| k > 0 && ["--drawn", "--count", "--corpus"].contains(&arguments[k - 1].as_str());
     let plain = (0..arguments.len()).filter(|&k| !arguments[k].starts_with("--") && !is_value(k));
     let plain: Vec<String> = plain.map(|k| arguments[k].clone()).collect();
-    let machines = plain
-        .first()
-        .cloned()
-        .unwrap_or_else(|| "tnv40,stiff,workshop".to_owned());
+    let machines = plain.first().map_or("tnv40,stiff,workshop", String::as_str);
     let given = |wanted: &str| arguments.iter().any(|argument| argument == wanted);
+    let beliefs = match (given("--wrong"), given("--one-wrong")) {
+        (true, _) => all_wrong(),
+        (_, true) => one_wrong(),
+        _ => vec![[1.0; 3]],
+    };
     let programs = programs(&arguments, &plain[1.min(plain.len())..]);
     println!(
         "what repeats of RMS and largest error, original and corrected in um, and their ratio; RMS of the rest and uncut path, corrected; time of \
          the original in s, and ratio; blocks; stretches changed"
     );
     for machine in machines.split(',') {
-        let machine = seen_by_encoders(&Machine::load(machine.as_ref()).expect("a machine"));
-        let mut groups: Vec<(String, Vec<Option<Ratios>>)> = Vec::new();
+        let machine = seen_by_encoders(&Machine::load(machine.as_ref())?);
+        let mut groups: Vec<(&str, Vec<Option<Ratios>>)> = Vec::new();
         for (group, name, text) in &programs {
-            let beliefs = match (given("--wrong"), given("--one-wrong")) {
-                (true, _) => all_wrong(),
-                (_, true) => one_wrong(),
-                _ => vec![[1.0; 3]],
-            };
             for factors in &beliefs {
-                let off = factors.map(|factor| (100.0 * (factor - 1.0)).round());
-                let name = if off == [0.0; 3] {
-                    name.clone()
-                } else {
-                    format!("{name} {:+} {:+} {:+} %", off[0], off[1], off[2])
+                let [i, f, g] = factors.map(|factor| (100.0 * (factor - 1.0)).round());
+                let name = match [i, f, g] == [0.0; 3] {
+                    true => name.clone(),
+                    false => format!("{name} {i:+} {f:+} {g:+} %"),
                 };
                 let ratios = line(&name, &machine, text, Some(wrong(&machine, *factors)));
                 match groups.iter_mut().find(|(name, _)| name == group) {
                     Some((_, all)) => all.push(ratios),
-                    None => groups.push((group.clone(), vec![ratios])),
+                    None => groups.push((group, vec![ratios])),
                 }
             }
         }
@@ -434,4 +394,5 @@ fn main() {
             );
         }
     }
+    Ok(())
 }

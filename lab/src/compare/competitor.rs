@@ -93,16 +93,14 @@ impl Competitor {
         known: &[Knowledge],
         is_nominal: bool,
     ) -> Vec<Self> {
-        let here = known
-            .iter()
-            .filter(|&&knowledge| knowledge != Knowledge::Unseen || !is_nominal);
-        here.flat_map(|&knowledge| {
-            let suited = controllers
-                .iter()
-                .filter(move |entry| knowledge.is_for(entry));
-            suited.map(move |&entry| Self { entry, knowledge })
-        })
-        .collect()
+        let mut all = Vec::new();
+        for &knowledge in known {
+            if knowledge != Knowledge::Unseen || !is_nominal {
+                let suited = controllers.iter().filter(|entry| knowledge.is_for(entry));
+                all.extend(suited.map(|&entry| Self { entry, knowledge }));
+            }
+        }
+        all
     }
 
     /// Its name in the table.
@@ -113,13 +111,10 @@ impl Competitor {
     /// The competitor of that name.
     pub fn find(name: &str) -> Option<Self> {
         let with = |knowledge: Knowledge| {
-            Some((
-                CONTROLLERS.find(name.strip_suffix(knowledge.suffix())?)?,
-                knowledge,
-            ))
+            let entry = CONTROLLERS.find(name.strip_suffix(knowledge.suffix())?)?;
+            Some(Self { entry, knowledge })
         };
-        let (entry, knowledge) = Knowledge::ALL.into_iter().find_map(with)?;
-        Some(Self { entry, knowledge })
+        Knowledge::ALL.into_iter().find_map(with)
     }
 
     /// Makes it for a machine. Recordings for an identification are made with the noise seed that
@@ -181,18 +176,12 @@ mod tests {
         for (i, competitor) in all.iter().enumerate() {
             let name = competitor.name();
             let found = Competitor::find(&name).unwrap();
-            assert_eq!(
-                (found.entry, found.knowledge),
-                (competitor.entry, competitor.knowledge)
-            );
+            assert_eq!(found.entry, competitor.entry);
+            assert_eq!(found.knowledge, competitor.knowledge);
             assert!(all[..i].iter().all(|other| other.name() != name), "{name}");
         }
         let nominal = Competitor::all(&controllers, &Knowledge::ALL, true);
-        assert!(
-            nominal
-                .iter()
-                .all(|competitor| competitor.knowledge != Knowledge::Unseen)
-        );
+        assert!(nominal.iter().all(|it| it.knowledge != Knowledge::Unseen));
         assert!(Competitor::find("uncorrected+30%off").is_none());
     }
 }

@@ -50,7 +50,7 @@ impl CutNumbers {
             max_um: statistics.max_um(),
             joint_um: run
                 .joint_error
-                .map(|joints| [joints.rms_mm, joints.max_mm].map(|mm| mm * 1e3)),
+                .map(|it| [it.rms_mm, it.max_mm].map(|mm| mm * 1e3)),
             uncut_um: run.uncut_mm * 1e3,
             max_deviation_um: statistics.max_deviation_um(),
             accel_mm_s2: statistics.max_command_accel_mm_s2(),
@@ -75,10 +75,8 @@ pub(super) fn row(
     let mut measured = Vec::with_capacity(seeds.len());
     for &seed in seeds {
         let machine = machine.with_noise_seed(seed);
-        let run = Run::on(&machine)
-            .laps(competitor.entry.laps)
-            .sharing(plan)
-            .watched(watch);
+        let run = Run::on(&machine).laps(competitor.entry.laps);
+        let run = run.sharing(plan).watched(watch);
         measured.push(CutNumbers::of(&cut(workpiece, controller, run)?));
     }
     Ok(ComparisonRow::new(

@@ -4,12 +4,12 @@
 //! The seeds are kept with the date of the draw and a fingerprint of all settings that can be
 //! tuned: defaults, searched ranges, and the recorded values. If a setting has changed since, the
 //! work is no longer held out, and a test demands new seeds.
-use feedwright::{BASELINE, Choices, Make, Setup};
+use feedwright::{Choices, Make, Setup, UNCORRECTED};
 use feedwright_sim::{Machine, Outcome, Run, RunError};
 use serde::{Deserialize, Serialize};
 
-use super::work::{CORNER, FEED_MM_S, Workpiece, steps};
-use crate::contour::CONTOURS;
+use super::work::{FEED_MM_S, Workpiece, steps};
+use crate::contour::{CONTOURS, CORNER, Contour};
 use crate::held_out::contours::placement;
 use crate::held_out::programs;
 use crate::peers::{CONTROLLERS, RECORDED};
@@ -54,14 +54,10 @@ impl HeldOutSeeds {
         let mut seeds = Vec::new();
         for seed in first + CONTOURS.len() as u64.. {
             let drawn = programs::program(seed);
-            let family = drawn
-                .name
-                .rsplit_once('-')
-                .map_or("", |(family, _)| family)
-                .to_owned();
-            let full = families.iter().filter(|other| **other == family).count() >= OF_A_FAMILY;
-            if !full && suits(&drawn)? {
-                families.push(family);
+            let family = drawn.name.rsplit_once('-').map_or("", |(family, _)| family);
+            let there = families.iter().filter(|other| *other == family).count();
+            if there < OF_A_FAMILY && suits(&drawn)? {
+                families.push(family.to_owned());
                 seeds.push(seed);
             }
             if seeds.len() == PROGRAMS {
@@ -78,47 +74,41 @@ impl HeldOutSeeds {
 
     /// Returns the workpieces of the seeds.
     pub fn workpieces(&self) -> Vec<Workpiece> {
-        let contours = CONTOURS
-            .iter()
-            .zip(&self.contours)
-            .map(|(contour, &seed)| Workpiece {
-                name: format!("{}-{seed}", contour.name),
+        let contour = |(contour, &seed): (&Contour, &u64)| {
+            let steps = contour.placed_steps(placement(seed), FEED_MM_S, CORNER);
+            Workpiece {
                 smooth: contour.is_smooth(),
                 held_out: true,
-                steps: contour
-                    .placed_steps(placement(seed), FEED_MM_S, CORNER)
-                    .expect("a contour has a path wherever it is"),
-            });
-        let programs = self.programs.iter().map(|&seed| {
-            let drawn = programs::program(seed);
-            let steps = steps(&drawn.name, &drawn.text)
-                .expect("only programs with a path are recorded, which a test holds");
-            Workpiece {
-                name: drawn.name,
-                smooth: false,
-                held_out: true,
-                steps,
+                ..Workpiece::of(
+                    format!("{}-{seed}", contour.name),
+                    steps.expect("a contour has a path wherever it is"),
+                )
             }
-        });
-        contours.chain(programs).collect()
+        };
+        let program = |&seed: &u64| {
+            let drawn = programs::program(seed);
+            let steps = steps(&drawn.name, &drawn.text);
+            let steps = steps.expect("only programs with a path are recorded, which a test holds");
+            Workpiece {
+                held_out: true,
+                ..Workpiece::of(drawn.name, steps)
+            }
+        };
+        let contours = CONTOURS.iter().zip(&self.contours).map(contour);
+        contours.chain(self.programs.iter().map(program)).collect()
     }
 }
 
 /// Returns true if a program stays in the plane and has a suitable machining time.
 fn suits(drawn: &programs::RandomProgram) -> Result<bool, RunError> {
-    let in_plane = drawn
-        .text
-        .lines()
-        .all(|line| line.starts_with('(') || !line.contains('Z'));
+    let mut lines = drawn.text.lines();
+    let in_plane = lines.all(|line| line.starts_with('(') || !line.contains('Z'));
     let Some(steps) = steps(&drawn.name, &drawn.text).filter(|_| in_plane) else {
         return Ok(false);
     };
     let machine = Machine::load(MACHINE.as_ref()).expect("it is built in");
     let choices = Choices::default();
-    let open = CONTROLLERS
-        .find(BASELINE)
-        .expect("the baseline is in the table");
-    let mut controller = Make::<2>::make(open, &mut Setup::new(&machine, &choices));
+    let mut controller = Make::<2>::make(&UNCORRECTED, &mut Setup::new(&machine, &choices));
     let run = Run::on(&machine).cut_steps(&steps, &mut *controller, &mut [])?;
     Ok(run.outcome == Outcome::Completed && (TIME_S[0]..=TIME_S[1]).contains(&run.time_s))
 }
@@ -126,20 +116,17 @@ fn suits(drawn: &programs::RandomProgram) -> Result<bool, RunError> {
 /// Returns a fingerprint of all settings that can be tuned: defaults and searched ranges of all
 /// controllers, and the recorded values.
 pub fn settings_fingerprint() -> String {
-    let controllers: Vec<_> = CONTROLLERS
-        .iter()
-        .map(|entry| {
-            let parameters = entry.parameters.iter();
-            let values: Vec<_> = parameters
-                .map(|p| (p.name, p.default, p.searched))
-                .collect();
-            (entry.name, values)
-        })
-        .collect();
+    let settings = |entry: &feedwright::Entry| {
+        let parameters = entry.parameters.iter();
+        let values: Vec<_> = parameters
+            .map(|p| (p.name, p.default, p.searched))
+            .collect();
+        (entry.name, values)
+    };
+    let controllers: Vec<_> = CONTROLLERS.iter().map(settings).collect();
     let content = serde_json::json!([controllers, RECORDED]);
-    blake3::hash(content.to_string().as_bytes())
-        .to_hex()
-        .to_string()
+    let hash = blake3::hash(content.to_string().as_bytes());
+    hash.to_hex().to_string()
 }
 
 #[cfg(test)]
@@ -157,12 +144,8 @@ mod tests {
         let workpieces = recorded.workpieces();
         assert_eq!(workpieces.len(), CONTOURS.len() + PROGRAMS);
         for (i, workpiece) in workpieces.iter().enumerate() {
-            assert!(
-                workpiece.held_out
-                    && workpieces[..i]
-                        .iter()
-                        .all(|other| other.name != workpiece.name)
-            );
+            let mut before = workpieces[..i].iter();
+            assert!(workpiece.held_out && before.all(|other| other.name != workpiece.name));
         }
     }
 

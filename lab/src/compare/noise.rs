@@ -13,11 +13,10 @@ pub(super) fn reported(machine: &Machine, seed: u64, count: u32) -> Vec<u64> {
         return vec![of_file];
     }
     let first = seed.wrapping_mul(u64::from(MAX_SEEDS) + 1).wrapping_add(1);
-    (0..)
+    let others = (0..)
         .map(|k| first.wrapping_add(k))
-        .filter(|&other| other != of_file)
-        .take(count.max(1) as usize)
-        .collect()
+        .filter(|&other| other != of_file);
+    others.take(count.max(1) as usize).collect()
 }
 
 #[cfg(test)]

@@ -47,11 +47,8 @@ pub struct ComparisonOptions {
 impl ComparisonOptions {
     /// All competitors on a machine, in the order of the table.
     pub fn competitors(&self, machine: &Machine) -> Vec<Competitor> {
-        Competitor::all(
-            &self.controllers,
-            &self.knowledge,
-            machine.name == self.nominal.name,
-        )
+        let is_nominal = machine.name == self.nominal.name;
+        Competitor::all(&self.controllers, &self.knowledge, is_nominal)
     }
 
     /// Returns true if parameters of a controller are set.
@@ -70,44 +67,39 @@ impl ComparisonOptions {
             _ if self.is_set(entry) => Some(Tuned::set(&machine.name, entry, &self.set)),
             Tuning::Search => None,
             Tuning::Defaults => Some(Tuned::defaults(&machine.name, entry)),
-            Tuning::Known(known) => known
-                .iter()
-                .find(|tuned| tuned.machine == machine.name && tuned.controller == entry.name)
-                .cloned(),
+            Tuning::Known(known) => {
+                let is_it = |it: &&Tuned| it.machine == machine.name && it.controller == entry.name;
+                known.iter().find(is_it).cloned()
+            }
         }
     }
 
     /// Controllers and machines whose values have to be searched, by name.
     pub fn to_search(&self) -> Vec<(String, &'static str)> {
-        let on = |machine: &'_ Machine| {
-            let name = machine.name.clone();
-            let searched = self
+        let mut all = Vec::new();
+        for machine in &self.machines {
+            let with_values = self
                 .controllers
                 .iter()
                 .filter(|entry| self.has_values(entry));
-            let open = searched.filter(|entry| self.given(machine, entry).is_none());
-            open.map(|entry| (name.clone(), entry.name))
-                .collect::<Vec<_>>()
-        };
-        self.machines.iter().flat_map(on).collect()
+            let open = with_values.filter(|entry| self.given(machine, entry).is_none());
+            all.extend(open.map(|entry| (machine.name.clone(), entry.name)));
+        }
+        all
     }
 
     /// Returns a fingerprint of everything that the result depends on, apart from the program.
     pub fn fingerprint(&self) -> String {
-        let workpieces: Vec<_> = self
-            .workpieces
-            .iter()
-            .map(|w| (&w.name, format!("{:?}", w.steps)))
-            .collect();
+        let path = |w: &Workpiece| (w.name.clone(), format!("{:?}", w.steps));
+        let workpieces: Vec<_> = self.workpieces.iter().map(path).collect();
         let machine = |machine: &Machine| (machine.name.clone(), machine.fingerprint());
         let machines: Vec<_> = self.machines.iter().map(machine).collect();
         let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
-        let compensated: Vec<_> = self
+        let known = self
             .machines
             .iter()
-            .filter_map(|machine| machine.compensated.as_ref())
-            .map(|known| format!("{known:?}"))
-            .collect();
+            .filter_map(|machine| machine.compensated.as_ref());
+        let compensated: Vec<_> = known.map(|known| format!("{known:?}")).collect();
         let content = serde_json::json!([
             workpieces,
             compensated,
@@ -120,8 +112,7 @@ impl ComparisonOptions {
             self.set,
             self.at_tolerance
         ]);
-        blake3::hash(content.to_string().as_bytes())
-            .to_hex()
-            .to_string()
+        let hash = blake3::hash(content.to_string().as_bytes());
+        hash.to_hex().to_string()
     }
 }

@@ -50,12 +50,17 @@ struct ResultsFile {
 
 impl RowsLine {
     fn of(rows: &[&ComparisonRow]) -> Self {
+        fn unless<T>(none: impl Fn(&T) -> bool, values: Vec<T>) -> Vec<T> {
+            if values.iter().all(none) {
+                vec![]
+            } else {
+                values
+            }
+        }
         let each = |number: fn(&ComparisonRow) -> f64| rows.iter().map(|row| number(row)).collect();
         let joint = |number: fn(&ComparisonRow) -> Option<f64>| {
             rows.iter().filter_map(|row| number(row)).collect()
         };
-        let lost: Vec<u32> = rows.iter().map(|row| row.lost).collect();
-        let diverged: Vec<bool> = rows.iter().map(|row| !row.completed).collect();
         Self {
             machine: rows[0].machine.clone(),
             controller: rows[0].controller.clone(),
@@ -64,16 +69,11 @@ impl RowsLine {
             max_um: each(|row| row.max_um),
             joint_rms_um: joint(|row| row.joint_rms_um),
             joint_max_um: joint(|row| row.joint_max_um),
-            lost: if lost.iter().any(|&lost| lost > 0) {
-                lost
-            } else {
-                vec![]
-            },
-            diverged: if diverged.contains(&true) {
-                diverged
-            } else {
-                vec![]
-            },
+            lost: unless(|lost| *lost == 0, rows.iter().map(|row| row.lost).collect()),
+            diverged: unless(
+                |diverged| !diverged,
+                rows.iter().map(|row| !row.completed).collect(),
+            ),
         }
     }
 
@@ -107,25 +107,14 @@ fn lines<T: Serialize>(items: impl IntoIterator<Item = T>) -> String {
 impl Comparison {
     /// The text of the file.
     pub fn text(&self) -> String {
-        let rows = self.machines().into_iter().flat_map(|machine| {
-            let here: Vec<&ComparisonRow> = self
-                .rows
-                .iter()
-                .filter(|row| row.machine == machine)
-                .collect();
-            let controllers = each_once(here.iter().map(|row| &row.controller));
-            let of = |controller| {
-                here.iter()
-                    .copied()
-                    .filter(|row| row.controller == controller)
-                    .collect::<Vec<_>>()
-            };
-            controllers
-                .into_iter()
-                .map(of)
-                .map(|rows| RowsLine::of(&rows))
-                .collect::<Vec<_>>()
-        });
+        let mut rows = Vec::new();
+        for machine in self.machines() {
+            let here = || self.rows.iter().filter(|row| row.machine == machine);
+            for controller in each_once(here().map(|row| &row.controller)) {
+                let its: Vec<_> = here().filter(|row| row.controller == controller).collect();
+                rows.push(RowsLine::of(&its));
+            }
+        }
         format!(
             "{{\"nominal\":{},\"seed\":{},\"noise_seeds\":{},\"contours\":{},\n\"tuned\":{},\n\"rows\":{},\n\"claims\":{},\n\"at_tolerance\":{}}}\n",
             json!(self.nominal),

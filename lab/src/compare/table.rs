@@ -1,7 +1,6 @@
 //! The table: one row for each workpiece, machine and controller, with ratios against uncorrected.
 
 use feedwright::BASELINE;
-use feedwright_control::Knows;
 use feedwright_ident::median_and_spread;
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
@@ -90,17 +89,15 @@ impl ComparisonRow {
         competitor: &Competitor,
         measured: &[CutNumbers],
     ) -> Self {
-        let spread =
-            |number: fn(&CutNumbers) -> f64| median_and_spread(measured.iter().map(number));
-        let worst =
-            |number: fn(&CutNumbers) -> f64| measured.iter().map(number).fold(0.0, f64::max);
+        let numbers = |number: fn(&CutNumbers) -> f64| measured.iter().map(number);
+        let spread = |number| median_and_spread(numbers(number));
+        let worst = |number| numbers(number).fold(0.0, f64::max);
         let joint = |k: usize| {
-            let all: Option<Vec<f64>> = measured
-                .iter()
-                .map(|cut| cut.joint_um.map(|um| um[k]))
-                .collect();
-            all.map(|um| median_and_spread(um).0)
+            let um = measured.iter().map(|cut| Some(cut.joint_um?[k]));
+            Some(median_and_spread(um.collect::<Option<Vec<f64>>>()?).0)
         };
+        let is_lost = |cut: &&CutNumbers| !cut.completed || cut.faded_out.is_some();
+        let faded_out = measured.iter().find_map(|cut| cut.faded_out);
         let ((rms_um, rms_spread_um), (max_um, max_spread_um)) =
             (spread(|cut| cut.rms_um), spread(|cut| cut.max_um));
         Self {
@@ -122,15 +119,9 @@ impl ComparisonRow {
             rms_ratio: 1.0,
             max_ratio: 1.0,
             seeds: measured.len() as u32,
-            lost: measured
-                .iter()
-                .filter(|cut| !cut.completed || cut.faded_out.is_some())
-                .count() as u32,
+            lost: measured.iter().filter(is_lost).count() as u32,
             completed: measured.iter().all(|cut| cut.completed),
-            faded_out: measured
-                .iter()
-                .find_map(|cut| cut.faded_out)
-                .map(str::to_owned),
+            faded_out: faded_out.map(str::to_owned),
         }
     }
 
@@ -146,10 +137,9 @@ impl ComparisonRow {
 
     /// Returns a note on a cut that diverged or left the loop, in words.
     pub fn note(&self) -> Option<String> {
-        let of = if self.seeds > 1 {
-            format!(" with {} of {} seeds", self.lost, self.seeds)
-        } else {
-            String::new()
+        let of = match self.seeds {
+            2.. => format!(" with {} of {} seeds", self.lost, self.seeds),
+            _ => String::new(),
         };
         match (self.completed, &self.faded_out) {
             (false, _) => Some(format!("diverged{of}")),
@@ -164,9 +154,9 @@ pub(super) fn in_order(cuts: &[ComparisonRow], options: &ComparisonOptions) -> V
     let mut rows = Vec::with_capacity(cuts.len());
     for workpiece in &options.workpieces {
         for machine in &options.machines {
-            let here = cuts
-                .iter()
-                .filter(|row| row.contour == workpiece.name && row.machine == machine.name);
+            let is_here =
+                |row: &&ComparisonRow| row.contour == workpiece.name && row.machine == machine.name;
+            let here = cuts.iter().filter(is_here);
             let base = here.clone().find(|row| row.controller == BASELINE);
             rows.extend(here.map(|row| against(row.clone(), base)));
         }
@@ -194,11 +184,6 @@ pub fn each_once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     once
 }
 
-/// Returns what the controller of a row knows of the machine; `None` if no controller has its name.
-pub fn knows(row: &ComparisonRow) -> Option<Knows> {
-    Competitor::find(&row.controller).map(|competitor| competitor.entry.knows)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,18 +201,12 @@ mod tests {
         let workpiece = &Workpiece::contours()[0];
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let competitor = Competitor::own(CONTROLLERS.find(BASELINE).unwrap());
-        let row = |measured: &[CutNumbers]| {
-            ComparisonRow::new(workpiece, &machine, &competitor, measured)
-        };
+        let row = |cuts: &[CutNumbers]| ComparisonRow::new(workpiece, &machine, &competitor, cuts);
         let sound = row(&measured);
-        assert_eq!(
-            (sound.rms_um, sound.rms_spread_um, sound.uncut_um),
-            (2.0, [1.0, 3.0], 9.0)
-        );
-        assert_eq!(
-            (sound.seeds, sound.lost, sound.completed, sound.note()),
-            (3, 0, true, None)
-        );
+        let um = (sound.rms_um, sound.rms_spread_um, sound.uncut_um);
+        assert_eq!(um, (2.0, [1.0, 3.0], 9.0));
+        assert_eq!((sound.seeds, sound.lost, sound.completed), (3, 0, true));
+        assert_eq!(sound.note(), None);
         assert_eq!((sound.joint_rms_um, sound.controlled_rms_um()), (None, 2.0));
         measured[1].completed = false;
         measured[2].faded_out = Some("why");

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::competitor::Competitor;
 use super::cut::{cut, seeds};
 use super::options::ComparisonOptions;
-use super::work::{CORNER, Workpiece};
-use crate::contour::{CONTOURS, Contour};
+use super::work::Workpiece;
+use crate::contour::{CONTOURS, CORNER, Contour};
 
 /// Largest contour error that is allowed, um.
 pub const TOLERANCE_UM: f64 = 10.0;
@@ -38,16 +38,11 @@ pub struct AtTolerance {
 
 /// The smooth contours among the workpieces.
 pub(super) fn contours(options: &ComparisonOptions) -> Vec<&'static Contour> {
-    let named = |name: &str| {
-        CONTOURS
-            .iter()
-            .find(|contour| contour.name == name && contour.is_smooth())
+    let named = |workpiece: &Workpiece| {
+        let is_it = |it: &&Contour| it.name == workpiece.name && it.is_smooth();
+        CONTOURS.iter().find(is_it)
     };
-    options
-        .workpieces
-        .iter()
-        .filter_map(|workpiece| named(&workpiece.name))
-        .collect()
+    options.workpieces.iter().filter_map(named).collect()
 }
 
 /// Raises the feedrate of a controller on a contour and returns the result; the ratio is still
@@ -61,17 +56,9 @@ pub(super) fn raised(
     watch: &dyn Watch,
 ) -> Result<AtTolerance, RunError> {
     // One noise seed is enough for a feedrate.
-    let seed = seeds(machine, options)
-        .first()
-        .copied()
-        .unwrap_or(machine.noise.seed);
-    let machine = machine.with_noise_seed(seed);
-    let best = fastest(
-        contour,
-        Run::on(&machine).laps(competitor.entry.laps).watched(watch),
-        controller,
-        &machine,
-    )?;
+    let machine = machine.with_noise_seed(seeds(machine, options)[0]);
+    let run = Run::on(&machine).laps(competitor.entry.laps).watched(watch);
+    let best = fastest(contour, run, controller, &machine)?;
     Ok(AtTolerance {
         contour: contour.name.to_owned(),
         controller: competitor.name(),
@@ -89,11 +76,9 @@ pub(super) fn against_baseline(mut found: Vec<AtTolerance>) -> Vec<AtTolerance> 
         .cloned()
         .collect();
     for row in &mut found {
-        let base = open
-            .iter()
-            .find(|base| base.contour == row.contour)
-            .and_then(|base| base.time_s);
-        row.time_ratio = row.time_s.zip(base).map(|(time_s, base)| time_s / base);
+        let base = open.iter().find(|base| base.contour == row.contour);
+        let ratio = |time_s: f64| Some(time_s / base?.time_s?);
+        row.time_ratio = row.time_s.and_then(ratio);
     }
     found
 }
@@ -117,19 +102,11 @@ fn fastest(
         let steps = contour
             .steps(feed_mm_s, CORNER)
             .expect("the feedrate is one");
-        let workpiece = Workpiece {
-            name: contour.name.to_owned(),
-            smooth: true,
-            held_out: false,
-            steps,
-        };
-        let cut = cut(&workpiece, controller, run)?;
-        let holds =
-            cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
-        Ok(holds.then_some(Holding {
-            feed_mm_s,
-            time_s: cut.run.time_s,
-        }))
+        let cut = cut(&Workpiece::of(contour.name, steps), controller, run)?;
+        let is_complete = cut.run.outcome == Outcome::Completed;
+        let holds = is_complete && cut.statistics.max_um() <= TOLERANCE_UM;
+        let time_s = cut.run.time_s;
+        Ok(holds.then_some(Holding { feed_mm_s, time_s }))
     };
     let highest = machine.limits.max_feed_mm_s;
     if let Some(at_highest) = holding(highest)? {

@@ -49,12 +49,12 @@ pub enum RangeEnd {
     High,
 }
 
-impl RangeEnd {
-    /// Returns the end in words.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Low => "low end",
-            Self::High => "high end",
+impl TunedValue {
+    fn of(name: &str, value: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            value,
+            at_end: None,
         }
     }
 }
@@ -62,17 +62,12 @@ impl RangeEnd {
 impl Tuned {
     /// The defaults.
     pub fn defaults(machine: &str, entry: &Entry) -> Self {
-        let value = |name: &str, value| TunedValue {
-            name: name.to_owned(),
-            value,
-            at_end: None,
-        };
+        let searched = entry.searched();
         Self {
             machine: machine.to_owned(),
             controller: entry.name.to_owned(),
-            values: entry
-                .searched()
-                .map(|(p, _)| value(p.name, p.default))
+            values: searched
+                .map(|(p, _)| TunedValue::of(p.name, p.default))
                 .collect(),
             cuts: 0,
             rms_um: 0.0,
@@ -87,11 +82,7 @@ impl Tuned {
         for set in set.iter().filter(|set| set.controller == entry.name) {
             match tuned.values.iter_mut().find(|value| value.name == set.name) {
                 Some(value) => value.value = set.value,
-                None => tuned.values.push(TunedValue {
-                    name: set.name.to_owned(),
-                    value: set.value,
-                    at_end: None,
-                }),
+                None => tuned.values.push(TunedValue::of(set.name, set.value)),
             }
         }
         tuned
@@ -114,9 +105,11 @@ impl Tuned {
     /// range.
     pub fn words(&self) -> String {
         let value = |value: &TunedValue| {
-            let end = value
-                .at_end
-                .map_or(String::new(), |end| format!(" ({})", end.word()));
+            let end = match value.at_end {
+                Some(RangeEnd::Low) => " (low end)",
+                Some(RangeEnd::High) => " (high end)",
+                None => "",
+            };
             format!("{} {}{end}", value.name, to_four_digits(value.value))
         };
         let mut words: Vec<String> = self.values.iter().map(value).collect();

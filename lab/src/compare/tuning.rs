@@ -10,7 +10,7 @@
 //! uncorrected cut costs as much as ten percent of error.
 //!
 //! The search uses the noise seed of the machine file. No reported cut of a noisy machine uses it.
-use feedwright::{BASELINE, Choices, Entry, Make, Setting, Setup};
+use feedwright::{Choices, Entry, Make, Setting, Setup, UNCORRECTED};
 use feedwright_control::Parameter;
 use feedwright_ident::quadratic_mean;
 use feedwright_sim::{Machine, PlanCache, Run, RunError, Watch};
@@ -19,7 +19,6 @@ use rayon::prelude::*;
 use super::cut::cut;
 use super::tuned::{RangeEnd, Tuned, TunedValue};
 use super::work::Workpiece;
-use crate::peers::CONTROLLERS;
 
 /// Points of the Halton sequence for each parameter.
 const SCATTERED: usize = 12;
@@ -50,38 +49,21 @@ pub fn search(
     watch: &dyn Watch,
 ) -> Result<Tuned, RunError> {
     let workpieces = Workpiece::tuning();
-    let base = CONTROLLERS
-        .find(BASELINE)
-        .expect("the baseline is in the table");
-    let open = Evaluation {
-        rms_um: f64::INFINITY,
-        time_s: f64::INFINITY,
-        sound: true,
-    };
     let plans: Vec<_> = workpieces.iter().map(|_| PlanCache::default()).collect();
-    let (workpieces, plans) = (&workpieces, &plans);
-    let open = Trial {
-        entry: base,
+    let mut trial = Trial {
+        entry: &UNCORRECTED,
         machine,
-        workpieces,
-        plans,
+        workpieces: &workpieces,
+        plans: &plans,
         seed,
         watch,
-        open,
-    }
-    .evaluate(&[])?;
-    Trial {
-        entry,
-        machine,
-        workpieces,
-        plans,
-        seed,
-        watch,
-        open,
-    }
-    .search()
+        open: Evaluation::NONE,
+    };
+    trial.open = trial.evaluate(&[])?;
+    Trial { entry, ..trial }.search()
 }
 
+#[derive(Clone, Copy)]
 struct Trial<'a> {
     entry: &'static Entry,
     machine: &'a Machine,
@@ -103,6 +85,14 @@ struct Evaluation {
     sound: bool,
 }
 
+impl Evaluation {
+    const NONE: Self = Self {
+        rms_um: f64::INFINITY,
+        time_s: f64::INFINITY,
+        sound: true,
+    };
+}
+
 /// A point of the unit cube and its cost.
 #[derive(Debug, Clone)]
 struct Candidate {
@@ -113,21 +103,17 @@ struct Candidate {
 impl Trial<'_> {
     fn search(&self) -> Result<Tuned, RunError> {
         let parameters: Vec<_> = self.entry.searched().collect();
-        let default: Vec<f64> = parameters
-            .iter()
-            .map(|(parameter, range)| place(*range, parameter.default))
-            .collect();
+        let default = |(parameter, range): &(&Parameter, _)| place(*range, parameter.default);
+        let default: Vec<f64> = parameters.iter().map(default).collect();
         let scattered = (1..=SCATTERED * parameters.len()).map(|i| halton(i, parameters.len()));
         let mut points = self.costs(std::iter::once(default).chain(scattered).collect())?;
         let mut cuts = points.len() as u64;
-        points.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let mut best = points.swap_remove(0);
         let mut step = FIRST_STEP;
         for _ in 0..=HALVINGS {
             for _ in 0..MOVES {
                 let mut around = self.costs(neighbours(&best.place, step))?;
                 cuts += around.len() as u64;
-                around.sort_by(|a, b| a.cost.total_cmp(&b.cost));
                 if around
                     .first()
                     .is_none_or(|nearest| nearest.cost >= best.cost)
@@ -140,18 +126,15 @@ impl Trial<'_> {
         }
         let settings = self.settings(&best.place);
         let found = self.evaluate(&settings)?;
-        let values = settings
-            .iter()
-            .zip(&best.place)
-            .map(|(setting, &place)| TunedValue {
-                name: setting.name.to_owned(),
-                value: setting.value,
-                at_end: end_of(place),
-            });
+        let value = |(setting, &place): (&Setting, &f64)| TunedValue {
+            name: setting.name.to_owned(),
+            value: setting.value,
+            at_end: end_of(place),
+        };
         Ok(Tuned {
             machine: self.machine.name.clone(),
             controller: self.entry.name.to_owned(),
-            values: values.collect(),
+            values: settings.iter().zip(&best.place).map(value).collect(),
             cuts,
             rms_um: found.rms_um,
             open_um: self.open.rms_um,
@@ -159,26 +142,23 @@ impl Trial<'_> {
         })
     }
 
+    /// The places with their costs, the cheapest first; equals stay in order.
     fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Candidate>, RunError> {
-        places
-            .into_par_iter()
-            .map(|place| {
-                Ok(Candidate {
-                    cost: self.cost(&place)?,
-                    place,
-                })
-            })
-            .collect()
+        let candidate = |place: Vec<f64>| {
+            let cost = self.cost(&place)?;
+            Ok(Candidate { place, cost })
+        };
+        let all: Result<Vec<Candidate>, RunError> = places.into_par_iter().map(candidate).collect();
+        let mut all = all?;
+        all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        Ok(all)
     }
 
     fn cost(&self, place: &[f64]) -> Result<f64, RunError> {
         let found = self.evaluate(&self.settings(place))?;
         let longer = (found.time_s / self.open.time_s - 1.0).max(0.0);
-        Ok(if found.sound {
-            found.rms_um * (1.0 + TIME_PRICE * longer)
-        } else {
-            f64::INFINITY
-        })
+        let cost = found.rms_um * (1.0 + TIME_PRICE * longer);
+        Ok(if found.sound { cost } else { f64::INFINITY })
     }
 
     fn evaluate(&self, settings: &[Setting]) -> Result<Evaluation, RunError> {
@@ -191,8 +171,7 @@ impl Trial<'_> {
         let run = Run::on(self.machine)
             .laps(self.entry.laps)
             .watched(self.watch);
-        let (mut each_um, mut time_s, mut sound) =
-            (Vec::with_capacity(self.workpieces.len()), 0.0, true);
+        let (mut each_um, mut time_s, mut sound) = (Vec::new(), 0.0, true);
         for (workpiece, plan) in self.workpieces.iter().zip(self.plans) {
             let cut = cut(workpiece, &mut *controller, run.sharing(plan))?;
             each_um.push(cut.joint_rms_um());
@@ -271,17 +250,14 @@ fn halton(i: usize, dimensions: usize) -> Vec<f64> {
         }
         sum
     };
-    BASES
-        .into_iter()
-        .cycle()
-        .take(dimensions)
-        .map(digit_reversed)
-        .collect()
+    let bases = BASES.into_iter().cycle().take(dimensions);
+    bases.map(digit_reversed).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::peers::CONTROLLERS;
 
     #[test]
     fn places_and_values_are_each_others_inverse() {
@@ -294,21 +270,19 @@ mod tests {
 
     #[test]
     fn the_halton_sequence_is_the_published_one() {
-        let first: Vec<Vec<f64>> = (1..=4).map(|i| halton(i, 2)).collect();
         let expected = [
             [0.5, 1.0 / 3.0],
             [0.25, 2.0 / 3.0],
             [0.75, 1.0 / 9.0],
             [0.125, 4.0 / 9.0],
         ];
-        for (point, expected) in first.iter().zip(expected) {
-            assert!(
-                point
-                    .iter()
-                    .zip(expected)
-                    .all(|(a, b)| (a - b).abs() < 1e-15),
-                "{point:?}"
-            );
+        for (i, expected) in (1..).zip(expected) {
+            let point = halton(i, 2);
+            let is_it = point
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-15);
+            assert!(is_it && point.len() == 2, "{point:?}");
         }
     }
 
@@ -318,71 +292,44 @@ mod tests {
         let workpieces = Workpiece::tuning();
         // Its defaults take a third longer than uncorrected, which the search may not.
         let entry = CONTROLLERS.find("fuzzy-feedrate").unwrap();
-        let nothing = Evaluation {
-            rms_um: f64::INFINITY,
-            time_s: f64::INFINITY,
-            sound: true,
-        };
         let plans: Vec<_> = workpieces.iter().map(|_| PlanCache::default()).collect();
         let evaluate = |entry: &'static Entry, settings: &[Setting]| {
-            let (machine, workpieces, plans) = (&machine, &workpieces, &plans);
             let trial = Trial {
                 entry,
-                machine,
-                workpieces,
-                plans,
+                machine: &machine,
+                workpieces: &workpieces,
+                plans: &plans,
                 seed: 1,
                 watch: &(),
-                open: nothing,
+                open: Evaluation::NONE,
             };
             trial.evaluate(settings).unwrap()
         };
-        let open = evaluate(CONTROLLERS.find(BASELINE).unwrap(), &[]);
+        let open = evaluate(&UNCORRECTED, &[]);
         let cost = |found: Evaluation| {
             found.rms_um * (1.0 + 10.0 * (found.time_s / open.time_s - 1.0).max(0.0))
         };
-        let defaults = cost(evaluate(
-            entry,
-            &Tuned::defaults("tnv40", entry).settings(entry),
-        ));
+        let defaults = Tuned::defaults("tnv40", entry).settings(entry);
+        let defaults = cost(evaluate(entry, &defaults));
         let tuned = search(entry, &machine, 1, &()).unwrap();
         let found = evaluate(entry, &tuned.settings(entry));
-        assert!(
-            cost(found) < defaults,
-            "{} of {defaults}: {tuned:?}",
-            cost(found)
-        );
-        assert!(
-            cost(found) <= open.rms_um * (1.0 + 1e-9),
-            "{} of {open:?}: {tuned:?}",
-            cost(found)
-        );
-        assert_eq!(
-            (tuned.rms_um, tuned.open_um),
-            (found.rms_um, open.rms_um),
-            "{tuned:?}"
-        );
+        let reached = cost(found);
+        assert!(reached < defaults, "{reached} of {defaults}: {tuned:?}");
+        let rounded_um = open.rms_um * (1.0 + 1e-9);
+        assert!(reached <= rounded_um, "{reached} of {open:?}: {tuned:?}");
+        assert_eq!((tuned.rms_um, tuned.open_um), (found.rms_um, open.rms_um));
         // Where speed along the path alone is to do it, there is nothing to gain in the same time.
         assert!(tuned.switched_off, "{tuned:?}");
         for ((parameter, [low, high]), value) in entry.searched().zip(&tuned.values) {
-            assert!(
-                parameter.name == value.name && (low..=high).contains(&value.value),
-                "{tuned:?}"
-            );
+            let is_in_range = (low..=high).contains(&value.value);
+            assert!(parameter.name == value.name && is_in_range, "{tuned:?}");
         }
         assert_eq!(tuned, search(entry, &machine, 1, &()).unwrap());
     }
 
     #[test]
     fn a_place_at_an_end_of_its_range_is_told() {
-        assert_eq!(
-            [0.0, 0.005, 0.5, 1.0].map(end_of),
-            [
-                Some(RangeEnd::Low),
-                Some(RangeEnd::Low),
-                None,
-                Some(RangeEnd::High)
-            ]
-        );
+        let [low, high] = [RangeEnd::Low, RangeEnd::High].map(Some);
+        assert_eq!([0.0, 0.005, 0.5, 1.0].map(end_of), [low, low, None, high]);
     }
 }

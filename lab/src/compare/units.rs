@@ -17,7 +17,7 @@ use super::tuned::Tuned;
 use super::tuning;
 use super::work::Workpiece;
 use crate::contour::Contour;
-use crate::kept::Kept;
+use crate::study::Kept;
 
 /// All results, ratios still open.
 #[derive(Debug, Default)]
@@ -31,68 +31,111 @@ pub(super) struct UnitResults {
 }
 
 /// A unit of work.
-#[derive(Clone, Copy)]
-enum WorkUnit<'a> {
-    Cuts(&'a Machine, Competitor),
-    Tolerance(&'a Machine, &'static Contour, &'static Entry),
+struct WorkUnit<'a> {
+    machine: &'a Machine,
+    competitor: Competitor,
+    /// The contour on which the feed is raised; without one all work is cut.
+    raised_on: Option<&'static Contour>,
 }
 
 impl<'a> WorkUnit<'a> {
     fn all(options: &'a ComparisonOptions) -> Vec<Self> {
-        let cuts = options.machines.iter().flat_map(|machine| {
-            options
-                .competitors(machine)
-                .into_iter()
-                .map(move |competitor| Self::Cuts(machine, competitor))
-        });
-        let on = options.machines.first().filter(|_| options.at_tolerance);
-        let raised = on.into_iter().flat_map(|machine| {
-            let contours = tolerance::contours(options);
-            contours.into_iter().flat_map(move |contour| {
+        let mut all = Vec::new();
+        for machine in &options.machines {
+            all.extend(
                 options
-                    .controllers
-                    .iter()
-                    .map(move |&entry| Self::Tolerance(machine, contour, entry))
-            })
-        });
-        cuts.chain(raised).collect()
+                    .competitors(machine)
+                    .into_iter()
+                    .map(|competitor| Self {
+                        machine,
+                        competitor,
+                        raised_on: None,
+                    }),
+            );
+        }
+        if let Some(machine) = options.machines.first().filter(|_| options.at_tolerance) {
+            for contour in tolerance::contours(options) {
+                all.extend(options.controllers.iter().map(|entry| Self {
+                    machine,
+                    competitor: Competitor::own(entry),
+                    raised_on: Some(contour),
+                }));
+            }
+        }
+        all
     }
 
     /// The machine and the controller whose values it needs.
     fn tuned_on(&self, options: &'a ComparisonOptions) -> (&'a Machine, &'static Entry) {
-        match *self {
-            Self::Cuts(
-                _,
-                Competitor {
-                    entry,
-                    knowledge: Knowledge::Unseen,
-                },
-            ) => (&options.nominal, entry),
-            Self::Cuts(machine, Competitor { entry, .. }) | Self::Tolerance(machine, _, entry) => {
-                (machine, entry)
-            }
-        }
+        let machine = match self.competitor.knowledge {
+            Knowledge::Unseen => &options.nominal,
+            _ => self.machine,
+        };
+        (machine, self.competitor.entry)
     }
 
-    fn steps(&self, options: &ComparisonOptions) -> usize {
-        if matches!(self, Self::Cuts(..)) {
-            options.workpieces.len()
-        } else {
-            1
+    fn steps(&self, options: &ComparisonOptions) -> u64 {
+        self.raised_on
+            .map_or(options.workpieces.len() as u64, |_| 1)
+    }
+
+    /// Cuts every workpiece, or raises the feed until the tolerance just holds.
+    fn work(
+        &self,
+        options: &ComparisonOptions,
+        tuned: Option<&Tuned>,
+        (kept, plans): (&Kept, &Plans),
+        watch: &dyn Watch,
+    ) -> Result<UnitResults, RunError> {
+        let Self {
+            machine,
+            competitor,
+            raised_on,
+        } = self;
+        let mut results = UnitResults::default();
+        // Made once and where it is needed: what it has identified serves all workpieces and seeds.
+        let mut made = None;
+        let mut controller = || competitor.make(machine, &options.nominal, options.seed, tuned);
+        if let Some(contour) = raised_on {
+            let key = key([
+                "at tolerance",
+                contour.name,
+                &machine.name,
+                competitor.entry.name,
+            ]);
+            let row = kept.once(&key, || {
+                tolerance::raised(
+                    contour,
+                    machine,
+                    competitor,
+                    &mut *controller(),
+                    options,
+                    watch,
+                )
+            })?;
+            watch.advance(1);
+            results.at_tolerance.push(row);
+            return Ok(results);
         }
+        let seeds = cut::seeds(machine, options);
+        for workpiece in &options.workpieces {
+            let key = key(["row", &workpiece.name, &machine.name, &competitor.name()]);
+            let row = kept.once(&key, || {
+                let controller = &mut **made.get_or_insert_with(&mut controller);
+                let plan = plans.of(workpiece, machine);
+                cut::row(
+                    workpiece, machine, competitor, controller, &seeds, &plan, watch,
+                )
+            })?;
+            watch.advance(1);
+            results.rows.push(row);
+        }
+        Ok(results)
     }
 }
 
 fn key(parts: [&str; 4]) -> String {
     serde_json::json!(parts).to_string()
-}
-
-fn row_key(workpiece: &Workpiece, machine: &Machine, competitor: &Competitor) -> String {
-    key(["row", &workpiece.name, &machine.name, &competitor.name()])
-}
-
-fn tolerance_key(machine: &Machine, contour: &Contour, entry: &Entry) -> String {
-    key(["at tolerance", contour.name, &machine.name, entry.name])
 }
 
 /// Tunes and cuts everything.
@@ -108,69 +151,47 @@ pub(super) fn work_on(
     let tuned = tune_alone(options, kept, watch)?;
     watch.begin(
         "cutting",
-        units.iter().map(|unit| unit.steps(options) as u64).sum(),
+        units.iter().map(|unit| unit.steps(options)).sum(),
     );
     let plans = Plans::default();
-    let parts: Result<Vec<UnitResults>, RunError> = units
-        .par_iter()
-        .map(|unit| {
-            let (on, entry) = unit.tuned_on(options);
-            let values = tuned
-                .iter()
-                .find(|tuned| tuned.machine == on.name && tuned.controller == entry.name);
-            match unit {
-                WorkUnit::Cuts(machine, competitor) => {
-                    cuts(options, machine, competitor, values, kept, &plans, watch)
-                }
-                WorkUnit::Tolerance(machine, contour, entry) => {
-                    raised(options, machine, contour, entry, values, kept, watch)
-                }
-            }
-        })
-        .collect();
-    Ok(UnitResults::of(tuned, parts?))
-}
-
-impl UnitResults {
-    fn of(tuned: Vec<Tuned>, parts: Vec<Self>) -> Self {
-        let mut all = Self {
-            tuned,
-            ..Self::default()
-        };
-        for part in parts {
-            all.rows.extend(part.rows);
-            all.at_tolerance.extend(part.at_tolerance);
-        }
-        all
-    }
-}
-
-/// Machines and controllers whose values the units need, each once, in the order of machines and
-/// controllers.
-fn tuned_on<'a>(
-    options: &'a ComparisonOptions,
-    units: &[WorkUnit<'a>],
-) -> Vec<(&'a Machine, &'static Entry)> {
-    let needed: Vec<_> = units.iter().map(|unit| unit.tuned_on(options)).collect();
-    let is_needed = |machine: &Machine, entry: &Entry| {
-        needed
-            .iter()
-            .any(|(on, of)| on.name == machine.name && of.name == entry.name)
+    let work = |unit: &WorkUnit<'_>| {
+        let (on, entry) = unit.tuned_on(options);
+        let is_it = |tuned: &&Tuned| tuned.machine == on.name && tuned.controller == entry.name;
+        unit.work(options, tuned.iter().find(is_it), (kept, &plans), watch)
     };
+    let parts: Result<Vec<UnitResults>, RunError> = units.par_iter().map(work).collect();
+    let mut all = UnitResults::default();
+    for part in parts? {
+        all.rows.extend(part.rows);
+        all.at_tolerance.extend(part.at_tolerance);
+    }
+    Ok(UnitResults { tuned, ..all })
+}
+
+/// Machines and controllers whose values are needed, each once, in the order of machines and
+/// controllers.
+fn tuned_on(options: &ComparisonOptions) -> Vec<(&Machine, &'static Entry)> {
+    let units = WorkUnit::all(options);
+    let needed: Vec<_> = units.iter().map(|unit| unit.tuned_on(options)).collect();
+    let nominal = &options.nominal;
     let others = options
         .machines
         .iter()
-        .filter(|machine| machine.name != options.nominal.name);
-    std::iter::once(&options.nominal)
-        .chain(others)
-        .flat_map(|machine| {
-            options
-                .controllers
-                .iter()
-                .map(move |&entry| (machine, entry))
-        })
-        .filter(|(machine, entry)| options.has_values(entry) && is_needed(machine, entry))
-        .collect()
+        .filter(|machine| machine.name != nominal.name);
+    let mut all = Vec::new();
+    for machine in std::iter::once(nominal).chain(others) {
+        for &entry in options
+            .controllers
+            .iter()
+            .filter(|entry| options.has_values(entry))
+        {
+            let mut needed = needed.iter();
+            if needed.any(|(on, of)| on.name == machine.name && of.name == entry.name) {
+                all.push((machine, entry));
+            }
+        }
+    }
+    all
 }
 
 /// Tunes the controllers, and cuts nothing.
@@ -182,7 +203,7 @@ pub fn tune_alone(
     kept: &Kept,
     watch: &dyn Watch,
 ) -> Result<Vec<Tuned>, RunError> {
-    let pairs = tuned_on(options, &WorkUnit::all(options));
+    let pairs = tuned_on(options);
     watch.begin("tuning every controller alike", pairs.len() as u64);
     let tune = |(machine, entry): &(&Machine, &'static Entry)| {
         let tuned = match options.given(machine, entry) {
@@ -205,80 +226,7 @@ struct Plans(Mutex<HashMap<[String; 2], Arc<PlanCache>>>);
 impl Plans {
     fn of(&self, workpiece: &Workpiece, machine: &Machine) -> Arc<PlanCache> {
         let key = [workpiece.name.clone(), machine.name.clone()];
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .entry(key)
-            .or_default()
-            .clone()
+        let mut plans = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        plans.entry(key).or_default().clone()
     }
-}
-
-/// The rows of a competitor on a machine: one for each workpiece.
-fn cuts(
-    options: &ComparisonOptions,
-    machine: &Machine,
-    competitor: &Competitor,
-    tuned: Option<&Tuned>,
-    kept: &Kept,
-    plans: &Plans,
-    watch: &dyn Watch,
-) -> Result<UnitResults, RunError> {
-    let seeds = cut::seeds(machine, options);
-    // Made once and where it is needed: what it has identified serves all workpieces and seeds.
-    let mut controller = None;
-    let mut row = |workpiece: &Workpiece| {
-        let row = kept.once(&row_key(workpiece, machine, competitor), || {
-            let controller = controller.get_or_insert_with(|| {
-                competitor.make(machine, &options.nominal, options.seed, tuned)
-            });
-            let plan = plans.of(workpiece, machine);
-            cut::row(
-                workpiece,
-                machine,
-                competitor,
-                &mut **controller,
-                &seeds,
-                &plan,
-                watch,
-            )
-        })?;
-        watch.advance(1);
-        Ok(row)
-    };
-    let rows: Result<Vec<ComparisonRow>, RunError> =
-        options.workpieces.iter().map(&mut row).collect();
-    Ok(UnitResults {
-        rows: rows?,
-        ..UnitResults::default()
-    })
-}
-
-/// The feed of a controller on a contour, raised until the tolerance just holds.
-fn raised(
-    options: &ComparisonOptions,
-    machine: &Machine,
-    contour: &'static Contour,
-    entry: &'static Entry,
-    tuned: Option<&Tuned>,
-    kept: &Kept,
-    watch: &dyn Watch,
-) -> Result<UnitResults, RunError> {
-    let row = kept.once(&tolerance_key(machine, contour, entry), || {
-        let competitor = Competitor::own(entry);
-        let mut controller = competitor.make(machine, &options.nominal, options.seed, tuned);
-        tolerance::raised(
-            contour,
-            machine,
-            &competitor,
-            &mut *controller,
-            options,
-            watch,
-        )
-    })?;
-    watch.advance(1);
-    Ok(UnitResults {
-        at_tolerance: vec![row],
-        ..UnitResults::default()
-    })
 }

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use super::competitor::{Competitor, Knowledge};
 use super::options::ComparisonOptions;
-use super::table::{ComparisonRow, each_once, knows};
+use super::table::{ComparisonRow, each_once};
 
 /// One claim on one workpiece of one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -73,16 +73,10 @@ const SQUARE: &str = "square";
 const RMS_SQUARE: Claim = Claim("RMS of the square", 0.03, "um");
 const MAX_SQUARE: Claim = Claim("max of the square", 0.5, "um");
 // On other machines without noise.
-const RMS_UNSEEN: Claim = Claim(
-    "RMS, unseen machine, against the best peer without model",
-    0.5,
-    "",
-);
-const RMS_IDENTIFIED: Claim = Claim(
-    "RMS, identified machine, against the best peer without model",
-    0.25,
-    "",
-);
+const UNSEEN: &str = "RMS, unseen machine, against the best peer without model";
+const RMS_UNSEEN: Claim = Claim(UNSEEN, 0.5, "");
+const IDENTIFIED: &str = "RMS, identified machine, against the best peer without model";
+const RMS_IDENTIFIED: Claim = Claim(IDENTIFIED, 0.25, "");
 // On machines with noise.
 const NOISY_BEST_PEER: Claim = Claim("RMS under noise against the best peer", 0.5, "");
 const NOISY_OFF: Claim = Claim("RMS under noise against parameters 20 % off", 0.4, "");
@@ -112,55 +106,38 @@ impl Claim {
     }
 
     /// The ratio of a number of two rows.
-    fn ratio(
-        &self,
-        row: &ComparisonRow,
-        against: &ComparisonRow,
-        number: fn(&ComparisonRow) -> f64,
-    ) -> Verdict {
+    fn ratio(&self, [row, against]: [&ComparisonRow; 2], number: RowNumber) -> Verdict {
         self.of(row, &against.controller, number(row) / number(against))
     }
 
     fn rms(&self, row: &ComparisonRow, against: &ComparisonRow) -> Verdict {
-        self.ratio(row, against, ComparisonRow::controlled_rms_um)
+        self.ratio([row, against], ComparisonRow::controlled_rms_um)
     }
 
     /// The difference of a number of two rows.
-    fn above(
-        &self,
-        row: &ComparisonRow,
-        against: &ComparisonRow,
-        number: fn(&ComparisonRow) -> f64,
-    ) -> Verdict {
+    fn above(&self, [row, against]: [&ComparisonRow; 2], number: RowNumber) -> Verdict {
         self.of(row, &against.controller, number(row) - number(against))
     }
 }
 
+/// A number of a row.
+type RowNumber = fn(&ComparisonRow) -> f64;
+
 /// The rows of a workpiece on a machine.
-struct RowsHere<'a> {
-    rows: Vec<&'a ComparisonRow>,
-}
+struct RowsHere<'a>(&'a [ComparisonRow]);
 
 /// All claims that the rows can bear out.
 pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
-    let workpiece = |name: &str| {
-        options
-            .workpieces
-            .iter()
-            .find(|workpiece| workpiece.name == name)
-    };
+    let noisy = || options.machines.iter().filter(|machine| machine.is_noisy());
     for here in rows.chunk_by(|a, b| a.contour == b.contour && a.machine == b.machine) {
-        let cell = RowsHere {
-            rows: here.iter().collect(),
-        };
-        let (Some(ours), Some(workpiece)) = (cell.named(BEST), workpiece(&here[0].contour)) else {
+        let cell = RowsHere(here);
+        let mut workpieces = options.workpieces.iter();
+        let workpiece = workpieces.find(|workpiece| workpiece.name == here[0].contour);
+        let (Some(ours), Some(workpiece)) = (cell.named(BEST), workpiece) else {
             continue;
         };
-        let is_noisy = options
-            .machines
-            .iter()
-            .any(|machine| machine.name == ours.machine && machine.is_noisy());
+        let is_noisy = noisy().any(|machine| machine.name == ours.machine);
         match (ours.machine == options.nominal.name, is_noisy) {
             (_, true) => verdicts.extend(cell.under_noise(ours)),
             (true, false) if workpiece.smooth => verdicts.extend(cell.without_corners(ours)),
@@ -171,35 +148,22 @@ pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> V
         if workpiece.held_out {
             verdicts.extend(cell.held_out(ours));
         }
-        verdicts.extend(
-            cell.named(DELIVERED)
-                .map(|base| PEAK_TORQUE.ratio(ours, base, |row| row.peak_torque_nm)),
-        );
+        let torque = |base| PEAK_TORQUE.ratio([ours, base], |row| row.peak_torque_nm);
+        verdicts.extend(cell.named(DELIVERED).map(torque));
     }
-    for machine in options
-        .machines
-        .iter()
-        .filter(|machine| machine.is_noisy() && options.workpieces.len() > 1)
-    {
+    for machine in noisy().filter(|_| options.workpieces.len() > 1) {
         let means = over_all_work(rows, &machine.name);
-        let cell = RowsHere {
-            rows: means.iter().collect(),
-        };
-        verdicts.extend(
-            cell.named(BEST)
-                .into_iter()
-                .flat_map(|ours| cell.under_noise(ours)),
-        );
+        let cell = RowsHere(&means);
+        let ours = cell.named(BEST).into_iter();
+        verdicts.extend(ours.flat_map(|ours| cell.under_noise(ours)));
     }
     verdicts
 }
 
 /// The square of the nominal machine.
 fn square(ours: &ComparisonRow) -> [Verdict; 2] {
-    [
-        RMS_SQUARE.of(ours, "", ours.rms_um),
-        MAX_SQUARE.of(ours, "", ours.max_um),
-    ]
+    let max = MAX_SQUARE.of(ours, "", ours.max_um);
+    [RMS_SQUARE.of(ours, "", ours.rms_um), max]
 }
 
 /// Returns a row for each controller of a machine with the quadratic means over all work, and
@@ -218,18 +182,13 @@ fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
             ..its[0].clone()
         }
     };
-    each_once(on().map(|row| &row.controller))
-        .into_iter()
-        .map(mean_of)
-        .collect()
+    let controllers = each_once(on().map(|row| &row.controller));
+    controllers.into_iter().map(mean_of).collect()
 }
 
 impl<'a> RowsHere<'a> {
     fn named(&self, controller: &str) -> Option<&'a ComparisonRow> {
-        self.rows
-            .iter()
-            .copied()
-            .find(|row| row.controller == controller)
+        self.0.iter().find(|row| row.controller == controller)
     }
 
     fn with(&self, controller: &str, knowledge: Knowledge) -> Option<&'a ComparisonRow> {
@@ -237,18 +196,13 @@ impl<'a> RowsHere<'a> {
     }
 
     fn without_corners(&self, ours: &ComparisonRow) -> Vec<Verdict> {
+        let (peer, bound) = (self.best_without_model(), self.named(NOISELESS_LIMIT));
         let mut verdicts = vec![
             RMS_UNCORRECTED.of(ours, BASELINE, ours.rms_ratio),
             MAX_UNCORRECTED.of(ours, BASELINE, ours.max_ratio),
         ];
-        verdicts.extend(
-            self.best_without_model()
-                .map(|peer| RMS_BEST_PEER.rms(ours, peer)),
-        );
-        verdicts.extend(
-            self.named(NOISELESS_LIMIT)
-                .map(|bound| RMS_EXACT_MODEL.rms(ours, bound)),
-        );
+        verdicts.extend(peer.map(|peer| RMS_BEST_PEER.rms(ours, peer)));
+        verdicts.extend(bound.map(|bound| RMS_EXACT_MODEL.rms(ours, bound)));
         verdicts
     }
 
@@ -256,9 +210,8 @@ impl<'a> RowsHere<'a> {
         let Some(peer) = self.best_without_model() else {
             return Vec::new();
         };
-        let unseen = self
-            .with(BEST, Knowledge::Unseen)
-            .map(|unseen| RMS_UNSEEN.rms(unseen, peer));
+        let unseen = self.with(BEST, Knowledge::Unseen);
+        let unseen = unseen.map(|unseen| RMS_UNSEEN.rms(unseen, peer));
         unseen
             .into_iter()
             .chain([RMS_IDENTIFIED.rms(ours, peer)])
@@ -268,28 +221,24 @@ impl<'a> RowsHere<'a> {
     fn under_noise(&self, ours: &ComparisonRow) -> Vec<Verdict> {
         let peer = self.best(&[Knows::Nothing, Knows::Identified, Knows::ExactModel]);
         let off = self.with(FEEDFORWARD_WITH_FEEDBACK, Knowledge::TwentyPercentOff);
-        let mut verdicts: Vec<Verdict> = peer
-            .map(|peer| NOISY_BEST_PEER.rms(ours, peer))
-            .into_iter()
-            .collect();
-        verdicts.extend(off.map(|off| NOISY_OFF.rms(ours, off)));
-        verdicts.extend(self.named(LIMIT).map(|limit| NOISY_LIMIT.rms(ours, limit)));
-        verdicts
+        let claims = [
+            (NOISY_BEST_PEER, peer),
+            (NOISY_OFF, off),
+            (NOISY_LIMIT, self.named(LIMIT)),
+        ];
+        let verdict = |(claim, other): (Claim, Option<_>)| Some(claim.rms(ours, other?));
+        claims.into_iter().filter_map(verdict).collect()
     }
 
     fn held_out(&self, ours: &ComparisonRow) -> Vec<Verdict> {
+        let open = self.named(BASELINE);
         let mut verdicts = vec![HELD_OUT_LOST.of(ours, "", f64::from(ours.lost))];
-        for other in [BASELINE, DELIVERED]
-            .into_iter()
-            .filter_map(|name| self.named(name))
-        {
-            verdicts.push(HELD_OUT_RMS.above(ours, other, ComparisonRow::controlled_rms_um));
-            verdicts.push(HELD_OUT_MAX.above(ours, other, ComparisonRow::controlled_max_um));
+        for other in open.into_iter().chain(self.named(DELIVERED)) {
+            let pair = [ours, other];
+            verdicts.push(HELD_OUT_RMS.above(pair, ComparisonRow::controlled_rms_um));
+            verdicts.push(HELD_OUT_MAX.above(pair, ComparisonRow::controlled_max_um));
         }
-        verdicts.extend(
-            self.named(BASELINE)
-                .map(|open| HELD_OUT_UNCUT.above(ours, open, |row| row.uncut_um)),
-        );
+        verdicts.extend(open.map(|open| HELD_OUT_UNCUT.above([ours, open], |row| row.uncut_um)));
         verdicts
     }
 
@@ -300,19 +249,22 @@ impl<'a> RowsHere<'a> {
     /// Returns the completed rows of peers whose kind of knowledge is in `known` and concerns their
     /// own machine. The limit and the default are no peers.
     fn peers(&self, known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
-        self.rows.iter().copied().filter(|row| {
-            let own = Competitor::find(&row.controller)
-                .is_some_and(|peer| peer.knowledge == Knowledge::Own);
-            let is_other = own && row.controller != BEST && row.controller != LIMIT;
-            is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
+        self.0.iter().filter(|row| {
+            let is_other = row.controller != BEST && row.controller != LIMIT;
+            let is_known = |peer: Competitor| {
+                peer.knowledge == Knowledge::Own && known.contains(&peer.entry.knows)
+            };
+            let peer = Competitor::find(&row.controller);
+            is_other && row.completed && peer.is_some_and(is_known)
         })
     }
 
     /// The best of these, uncorrected among them; none where the uncorrected cut is alone.
     fn best(&self, known: &[Knows]) -> Option<&'a ComparisonRow> {
         self.peers(known).find(|row| row.controller != BASELINE)?;
+        let rms_um = ComparisonRow::controlled_rms_um;
         self.peers(known)
-            .min_by(|a, b| a.controlled_rms_um().total_cmp(&b.controlled_rms_um()))
+            .min_by(|a, b| rms_um(a).total_cmp(&rms_um(b)))
     }
 }
 

@@ -2,22 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use feedwright::gcode;
-use feedwright_gcode;
-use feedwright_gcode::canon::Corner;
+use feedwright::{JobError, gcode};
 use feedwright_plan::{PathError, Pieces, Step};
 use thiserror::Error;
 
-use crate::contour::CONTOURS;
+use crate::contour::{CONTOURS, CORNER, Contour};
 
 /// Feedrate of the contours, mm/s.
 pub const FEED_MM_S: f64 = 50.0;
-/// Corner mode of the contours: corners are taken at the speed that the machine's limits allow.
-pub(crate) const CORNER: Corner = Corner::Continuous {
-    tolerance_mm: None,
-    merge_mm: None,
-};
-
 /// The parts in the XY plane that come with the program.
 const PARTS: [(&str, &str); 6] = [
     ("circle.ngc", include_str!("../../../parts/circle.ngc")),
@@ -47,19 +39,29 @@ pub struct Workpiece {
 }
 
 impl Workpiece {
+    /// A workpiece with corners, on which something may have been tuned.
+    pub(super) fn of(name: impl Into<String>, steps: Vec<Step>) -> Self {
+        Self {
+            name: name.into(),
+            smooth: false,
+            held_out: false,
+            steps,
+        }
+    }
+
     /// The closed-form contours at [`FEED_MM_S`].
     pub fn contours() -> Vec<Self> {
-        CONTOURS
-            .iter()
-            .map(|contour| Self {
-                name: contour.name.to_owned(),
+        let workpiece = |contour: &Contour| {
+            let steps = contour.steps(FEED_MM_S, CORNER);
+            Self {
                 smooth: contour.is_smooth(),
-                held_out: false,
-                steps: contour
-                    .steps(FEED_MM_S, CORNER)
-                    .expect("the built-in contours have a path"),
-            })
-            .collect()
+                ..Self::of(
+                    contour.name,
+                    steps.expect("the built-in contours have a path"),
+                )
+            }
+        };
+        CONTOURS.iter().map(workpiece).collect()
     }
 
     /// Returns the work that the peers are tuned on: a smooth contour, one with corners, and acute
@@ -68,28 +70,22 @@ impl Workpiece {
         let mut all = Self::contours();
         all.retain(|workpiece| TUNING_CONTOURS.contains(&workpiece.name.as_str()));
         let tips = steps("tips", TIPS).expect("the tips have a path, which a test holds");
-        all.push(Self {
-            name: "tips".to_owned(),
-            smooth: false,
-            held_out: false,
-            steps: tips,
-        });
+        all.push(Self::of("tips", tips));
         all
     }
 
     /// Returns the work that everything may be tuned on: the contours, and the parts in the plane
     /// that come with the program.
     pub fn development() -> Vec<Self> {
-        let part = |(name, text): &(&str, &str)| Self {
-            name: (*name).to_owned(),
-            smooth: false,
-            held_out: false,
-            steps: steps(name, text).expect("the parts have a path, which a test holds"),
-        };
-        Self::contours()
-            .into_iter()
-            .chain(PARTS.iter().map(part))
-            .collect()
+        let mut all = Self::contours();
+        all.extend(PARTS.map(|(name, text)| {
+            let steps = steps(name, text);
+            Self::of(
+                name,
+                steps.expect("the parts have a path, which a test holds"),
+            )
+        }));
+        all
     }
 
     /// A program, read by `settings` as it is elsewhere.
@@ -98,29 +94,18 @@ impl Workpiece {
     /// A program with mistakes, one that leaves the XY plane, or one without a path.
     pub fn program(file: &Path, settings: gcode::Settings) -> Result<Self, PartError> {
         let program = gcode::Program::in_file(file);
-        let summary = program
-            .check(settings.clone())
-            .map_err(feedwright::JobError::from)?;
+        let summary = program.check(settings.clone()).map_err(JobError::from)?;
         if summary.moves[2] {
             return Err(PartError::LeavesPlane {
                 part: file.to_owned(),
             });
         }
-        let steps = program
-            .reader(settings)
-            .map_err(feedwright::JobError::from)?
-            .map_while(Result::ok);
-        let steps: Result<Vec<Step>, PathError> = Pieces::new(steps).collect();
-        let steps = steps.map_err(|fault| feedwright::JobError::Path {
-            part: program.name(),
-            fault,
-        })?;
-        Ok(Self {
-            name: program.file_name(),
-            smooth: false,
-            held_out: false,
-            steps,
-        })
+        let steps = program.reader(settings).map_err(JobError::from)?;
+        let steps: Result<Vec<Step>, PathError> =
+            Pieces::new(steps.map_while(Result::ok)).collect();
+        let part = program.name();
+        let steps = steps.map_err(|fault| JobError::Path { part, fault })?;
+        Ok(Self::of(program.file_name(), steps))
     }
 }
 
@@ -139,7 +124,7 @@ pub enum PartError {
     /// It cannot be read, or has mistakes.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Program(#[from] feedwright::JobError),
+    Program(#[from] JobError),
     /// The comparison is of two axes.
     #[error("{} moves Z; the comparison is of motions in the XY plane", part.display())]
     #[diagnostic(help("feedwright run compares two controllers on programs in space"))]
@@ -155,11 +140,13 @@ mod tests {
 
     #[test]
     fn controllers_are_tuned_on_a_smooth_contour_on_corners_and_on_tips() {
-        let names: Vec<String> = Workpiece::tuning()
-            .into_iter()
-            .map(|workpiece| workpiece.name)
-            .collect();
-        assert_eq!(names, ["eight", "square", "tips"]);
+        let tuning = Workpiece::tuning();
+        assert!(
+            tuning
+                .iter()
+                .map(|it| &it.name[..])
+                .eq(["eight", "square", "tips"])
+        );
     }
 
     #[test]
@@ -167,19 +154,12 @@ mod tests {
         let all = Workpiece::development();
         assert_eq!(all.len(), CONTOURS.len() + PARTS.len());
         for (i, workpiece) in all.iter().enumerate() {
-            assert!(
-                all[..i].iter().all(|other| other.name != workpiece.name),
-                "{}",
-                workpiece.name
-            );
+            let name = &workpiece.name;
+            assert!(all[..i].iter().all(|other| other.name != *name), "{name}");
             for step in &workpiece.steps {
                 if let Step::Piece(piece) = step {
-                    assert_eq!(
-                        piece.curve.at(piece.length_mm).position_mm[2],
-                        0.0,
-                        "{}",
-                        workpiece.name
-                    );
+                    let [_, _, z] = piece.curve.at(piece.length_mm).position_mm;
+                    assert_eq!(z, 0.0, "{name}");
                 }
             }
         }

@@ -93,19 +93,13 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
     let (kp_1_s, speed_loop) = (random.by_ratio(KP_1_S), random.by_ratio(SPEED_LOOP));
     // One machine in two has equal axes, as it should.
     let unlike = random.one_in(2);
-    let other = |random: &mut Random| {
-        if unlike {
-            random.by_ratio([1.0 / UNLIKE, UNLIKE])
-        } else {
-            1.0
-        }
+    let other = |random: &mut Random| match unlike {
+        true => random.by_ratio([1.0 / UNLIKE, UNLIKE]),
+        false => 1.0,
     };
     let inertia = random.by_ratio(FACTOR);
     let friction = [random.by_ratio(FACTOR), random.by_ratio(FACTOR)];
-    let disturbance = [
-        random.by_ratio(DISTURBANCE_NM),
-        random.by_ratio(DISTURBANCE_HZ),
-    ];
+    let disturbance = [DISTURBANCE_NM, DISTURBANCE_HZ].map(|range| random.by_ratio(range));
     let torque = random.by_ratio(TORQUE);
     for (i, table) in AXES.into_iter().enumerate() {
         let mut axis = *base.axis(i);
@@ -116,20 +110,21 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
         axis.coulomb_friction_nm = rounded(axis.coulomb_friction_nm * friction[1], 3);
         [axis.disturbance_nm, axis.disturbance_hz] = disturbance;
         let needed_nm = torque_of_plan_nm(&axis, &base, libm::hypot(along, across));
-        variant = variant
-            .with(table, "kp_1_s", axis.kp_1_s)
-            .with(table, "inertia_kg_m2", axis.inertia_kg_m2)
-            .with(table, "kv_nm_s_per_rad", axis.kv_nm_s_per_rad)
-            .with(table, "viscous_friction_nm_s", axis.viscous_friction_nm_s)
-            .with(table, "coulomb_friction_nm", axis.coulomb_friction_nm)
-            .with(table, "disturbance_nm", axis.disturbance_nm)
-            .with(table, "disturbance_hz", axis.disturbance_hz)
-            .with(table, "torque_limit_nm", rounded(torque * needed_nm, 3));
+        for (key, value) in [
+            ("kp_1_s", axis.kp_1_s),
+            ("inertia_kg_m2", axis.inertia_kg_m2),
+            ("kv_nm_s_per_rad", axis.kv_nm_s_per_rad),
+            ("viscous_friction_nm_s", axis.viscous_friction_nm_s),
+            ("coulomb_friction_nm", axis.coulomb_friction_nm),
+            ("disturbance_nm", axis.disturbance_nm),
+            ("disturbance_hz", axis.disturbance_hz),
+            ("torque_limit_nm", rounded(torque * needed_nm, 3)),
+        ] {
+            variant = variant.with(table, key, value);
+        }
     }
-    let late = [
-        random.by_ratio(ENCODER_UM),
-        rounded(random.between([0.0, DELAY_S]), 3),
-    ];
+    let step_um = random.by_ratio(ENCODER_UM);
+    let late = [step_um, rounded(random.between([0.0, DELAY_S]), 3)];
     let has = [!random.one_in(3), !random.one_in(3)];
     let keys = ["encoder_step_um", "drive_delay_s"];
     let wanted = (0..2).filter(|&i| has[i] && class != Class::Rigid);
@@ -150,10 +145,11 @@ fn torque_of_plan_nm(axis: &Axis, machine: &Machine, accel_mm_s2: f64) -> f64 {
 /// decay.
 pub fn is_stable(machine: &Machine) -> bool {
     let is_simple = |axis: &Axis| axis.transmission.is_none() && axis.speed_integral_s == 0.0;
+    let margin_deg = |axis: &Axis| phase_margin_deg(axis, machine.period.servo_s);
     machine
         .axes
         .iter()
-        .all(|axis| phase_margin_deg(axis, machine.period.servo_s) >= PHASE_MARGIN_DEG)
+        .all(|axis| margin_deg(axis) >= PHASE_MARGIN_DEG)
         && (machine.axes.iter().all(is_simple) || dies_away(machine))
 }
 
@@ -183,20 +179,16 @@ fn dies_away(machine: &Machine) -> bool {
     }
     let mut plant = Plant::<3>::new(&linear, [0.0; 3]);
     // A hundredth of a turn a second: far below the torque limit.
-    plant.push(std::array::from_fn(|i| {
-        0.01 * TAU * linear.axis(i).inertia_kg_m2
-    }));
+    plant.push([0, 1, 2].map(|i| 0.01 * TAU * linear.axis(i).inertia_kg_m2));
     let [mut most_mm, mut late_mm] = [[0.0_f64; 3]; 2];
     let periods = (2.0 * QUIET_S / machine.period.servo_s) as u32;
     for n in 0..periods {
         let at_mm = plant.step([0.0; 3]).joint_mm;
         for i in 0..3 {
             most_mm[i] = most_mm[i].max(at_mm[i].abs());
-            late_mm[i] = if 2 * n < periods {
-                0.0
-            } else {
-                late_mm[i].max(at_mm[i].abs())
-            };
+            if 2 * n >= periods {
+                late_mm[i] = late_mm[i].max(at_mm[i].abs());
+            }
         }
     }
     (0..3).all(|i| late_mm[i] <= QUIET * most_mm[i])
@@ -226,80 +218,58 @@ mod tests {
             let made = variant.machine().expect("a machine file without faults");
             assert!(is_stable(&made), "{}", variant.text());
             assert_eq!(variant, machine(seed, Class::Any));
-            assert!(
-                made.axes
-                    .iter()
-                    .all(|axis| (KP_1_S[0]..=KP_1_S[1]).contains(&axis.kp_1_s)),
-                "{}",
-                variant.text()
-            );
+            let [least, most] = KP_1_S;
+            let is_in_range = |axis: &Axis| (least..=most).contains(&axis.kp_1_s);
+            assert!(made.axes.iter().all(is_in_range), "{}", variant.text());
         }
-        assert_ne!(
-            machine(1, Class::Any).changes,
-            machine(2, Class::Any).changes
-        );
+        let [one, two] = [1, 2].map(|seed| machine(seed, Class::Any).changes);
+        assert_ne!(one, two);
     }
 
     #[test]
     fn rigid_ones_have_neither_steps_nor_delay_and_most_others_do() {
-        let late = |machine: Machine| {
-            machine.axis(0).encoder_step_um > 0.0 || machine.axis(0).drive_delay_s > 0.0
+        let late = |seed: u64, class| {
+            let axis = *machine(seed, class).machine().expect("valid").axis(0);
+            axis.encoder_step_um > 0.0 || axis.drive_delay_s > 0.0
         };
-        let count = |class| {
-            (0..SEEDS)
-                .filter(|&seed| late(machine(seed, class).machine().expect("valid")))
-                .count()
-        };
+        let count = |class| (0..SEEDS).filter(|&seed| late(seed, class)).count();
         assert_eq!(count(Class::Rigid), 0);
         assert!(count(Class::Any) > SEEDS as usize / 2);
     }
 
     #[test]
     fn realistic_machines_are_valid_stable_and_of_all_kinds() {
-        let machines: Vec<Machine> = (0..SEEDS)
-            .map(|seed| {
-                let variant = machine(seed, Class::Realistic);
-                assert_eq!(variant, machine(seed, Class::Realistic));
-                let made = variant.machine().expect("a machine file without faults");
-                assert!(is_stable(&made), "{}", variant.text());
-                made
-            })
-            .collect();
-        let part = |has: &dyn Fn(&Axis) -> bool| {
-            machines
-                .iter()
-                .filter(|machine| has(machine.axis(1)))
-                .count() as f64
-                / SEEDS as f64
+        let made = |seed: u64| {
+            let variant = machine(seed, Class::Realistic);
+            assert_eq!(variant, machine(seed, Class::Realistic));
+            let made = variant.machine().expect("a machine file without faults");
+            assert!(is_stable(&made), "{}", variant.text());
+            made
         };
-        let parts = [
-            part(&|axis| axis.transmission.is_some()),
-            part(&|axis| {
-                axis.transmission
-                    .is_some_and(|screw| screw.backlash_um > 0.0)
-            }),
-            part(&|axis| axis.speed_integral_s > 0.0),
-            part(&|axis| axis.velocity_feedforward > 0.0),
-            part(&|axis| axis.cogging_nm > 0.0),
-            part(&|axis| axis.stribeck_nm > 0.0),
-            part(&|axis| axis.presliding_um > 0.0),
-            part(&|axis| axis.encoder_step_um > 0.0),
-            part(&|axis| axis.drive_delay_s > 0.0),
-            part(&|axis| axis.encoder_noise_um > 0.0),
+        let machines: Vec<Machine> = (0..SEEDS).map(made).collect();
+        let effects: [fn(&Axis) -> f64; 10] = [
+            |axis| axis.transmission.map_or(0.0, |_| 1.0),
+            |axis| axis.transmission.map_or(0.0, |screw| screw.backlash_um),
+            |axis| axis.speed_integral_s,
+            |axis| axis.velocity_feedforward,
+            |axis| axis.cogging_nm,
+            |axis| axis.stribeck_nm,
+            |axis| axis.presliding_um,
+            |axis| axis.encoder_step_um,
+            |axis| axis.drive_delay_s,
+            |axis| axis.encoder_noise_um,
         ];
+        let parts = effects.map(|effect| {
+            let has = |machine: &&Machine| effect(machine.axis(1)) > 0.0;
+            machines.iter().filter(has).count() as f64 / SEEDS as f64
+        });
         assert!(
             parts.iter().all(|part| (0.1..0.9).contains(part)),
             "{parts:?}"
         );
         for servo_s in [0.0005, 0.001, 0.002] {
-            assert!(
-                machines
-                    .iter()
-                    .filter(|machine| machine.period.servo_s == servo_s)
-                    .count()
-                    > 20,
-                "{servo_s} s"
-            );
+            let has = |machine: &&Machine| machine.period.servo_s == servo_s;
+            assert!(machines.iter().filter(has).count() > 20, "{servo_s} s");
         }
     }
 
@@ -308,14 +278,10 @@ mod tests {
         for name in ["workshop", "stiff", "router", "soft"] {
             let mut machine = Machine::load(name.as_ref()).expect("built in");
             assert!(is_stable(&machine), "{name}");
-            (
-                machine.axes[1].speed_integral_s,
-                machine.axes[1].torque_filter_hz,
-            ) = (0.0005, 50.0);
-            assert!(
-                !is_stable(&machine),
-                "{name} with an integral time of 0.5 ms behind a filter of 50 Hz"
-            );
+            let axis = &mut machine.axes[1];
+            (axis.speed_integral_s, axis.torque_filter_hz) = (0.0005, 50.0);
+            let what = "with an integral time of 0.5 ms behind a filter of 50 Hz";
+            assert!(!is_stable(&machine), "{name} {what}");
         }
     }
 

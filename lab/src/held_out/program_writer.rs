@@ -33,11 +33,8 @@ impl ProgramWriter {
             2 => format!("G64 P{}", random.by_ratio([0.001, 0.05])),
             _ => "G64".to_owned(),
         };
-        let lines = vec![
-            format!("({comment})"),
-            "G21 G17 G90 G94 G40".to_owned(),
-            mode,
-        ];
+        let modes = "G21 G17 G90 G94 G40".to_owned();
+        let lines = vec![format!("({comment})"), modes, mode];
         let mixed = random.one_in(3);
         let mut writer = Self {
             random,
@@ -95,6 +92,14 @@ impl ProgramWriter {
         self.line([x + x_mm, y + y_mm, z]);
     }
 
+    /// A straight cut of a length in a direction.
+    pub(super) fn leg(&mut self, leg_mm: f64, heading_rad: f64) {
+        self.by(
+            leg_mm * libm::cos(heading_rad),
+            leg_mm * libm::sin(heading_rad),
+        );
+    }
+
     /// An arc in the XY plane about a centre that lies at `to_center_mm` from here;
     /// counter-clockwise where `sweep_rad` is positive; a whole turn where it is 2 pi. Rises by
     /// `rise_mm`.
@@ -105,10 +110,9 @@ impl ProgramWriter {
         let (sin, cos) = (libm::sin(sweep_rad), libm::cos(sweep_rad));
         let turned = [-i * cos + j * sin, -i * sin - j * cos];
         let is_whole = (sweep_rad.abs() - std::f64::consts::TAU).abs() < 1e-9;
-        let [end_x, end_y] = if is_whole {
-            [x, y]
-        } else {
-            [x + i + turned[0], y + j + turned[1]]
+        let [end_x, end_y] = match is_whole {
+            true => [x, y],
+            false => [x + i + turned[0], y + j + turned[1]],
         };
         let code = if sweep_rad > 0.0 { "G3" } else { "G2" };
         self.travel(code, [end_x, end_y, z + rise_mm], &format!(" I{i} J{j}"));
@@ -125,10 +129,9 @@ impl ProgramWriter {
         let to_mm = to_mm.map(decimal);
         let [x, y, z] = to_mm;
         // A program in the plane stays one of two axes.
-        let height = if z == 0.0 && self.at_mm[2] == 0.0 {
-            String::new()
-        } else {
-            format!(" Z{z}")
+        let height = match z == 0.0 && self.at_mm[2] == 0.0 {
+            true => String::new(),
+            false => format!(" Z{z}"),
         };
         self.lines.push(format!("{code} X{x} Y{y}{height}{more}"));
         self.at_mm = to_mm;
@@ -146,9 +149,8 @@ impl ProgramWriter {
     fn spend(&mut self, leg_mm: f64) {
         /// However short: a servo period or two.
         const MIN_S: f64 = 0.002;
-        self.left_s -= (leg_mm / self.feed_mm_s)
-            .max((leg_mm / ACCEL_MM_S2).sqrt())
-            .max(MIN_S);
+        let short_s = (leg_mm / ACCEL_MM_S2).sqrt();
+        self.left_s -= (leg_mm / self.feed_mm_s).max(short_s).max(MIN_S);
     }
 }
 

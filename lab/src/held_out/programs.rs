@@ -6,60 +6,22 @@ use std::f64::consts::{PI, TAU};
 use super::program_writer::ProgramWriter;
 use super::random::Random;
 
-/// A kind of program.
-#[derive(Debug, Clone, Copy)]
-pub struct Family {
-    /// Name.
-    pub name: &'static str,
-    write: fn(&mut ProgramWriter),
-}
+/// A kind of program: name, and how a part of one is written.
+type Family = (&'static str, fn(&mut ProgramWriter));
 
 /// All of them.
-pub const FAMILIES: [Family; 11] = [
-    Family {
-        name: "polyline",
-        write: polyline,
-    },
-    Family {
-        name: "arcs",
-        write: arcs,
-    },
-    Family {
-        name: "cam",
-        write: cam,
-    },
-    Family {
-        name: "spikes",
-        write: spikes,
-    },
-    Family {
-        name: "battlement",
-        write: battlement,
-    },
-    Family {
-        name: "slots",
-        write: slots,
-    },
-    Family {
-        name: "letters",
-        write: letters,
-    },
-    Family {
-        name: "circles",
-        write: circles,
-    },
-    Family {
-        name: "helix",
-        write: helix,
-    },
-    Family {
-        name: "pocket",
-        write: pocket,
-    },
-    Family {
-        name: "retraced",
-        write: retraced,
-    },
+const FAMILIES: [Family; 11] = [
+    ("polyline", polyline),
+    ("arcs", arcs),
+    ("cam", cam),
+    ("spikes", spikes),
+    ("battlement", battlement),
+    ("slots", slots),
+    ("letters", letters),
+    ("circles", circles),
+    ("helix", helix),
+    ("pocket", pocket),
+    ("retraced", retraced),
 ];
 
 /// Time of one part of a program, s.
@@ -81,8 +43,8 @@ pub struct RandomProgram {
 /// The program of a seed; the same on every platform.
 pub fn program(seed: u64) -> RandomProgram {
     let mut random = Random::new(seed);
-    let family = FAMILIES[random.whole(0, FAMILIES.len() as u32 - 1) as usize];
-    let name = format!("{}-{seed}", family.name);
+    let (family, write) = FAMILIES[random.whole(0, FAMILIES.len() as u32 - 1) as usize];
+    let name = format!("{family}-{seed}");
     let mut writer = ProgramWriter::new(random, &name);
     for part in 0..writer.random.whole(1, PARTS) {
         if part > 0 {
@@ -90,12 +52,10 @@ pub fn program(seed: u64) -> RandomProgram {
         }
         let time_s = writer.random.between(PART_S);
         writer.begin_part(time_s);
-        (family.write)(&mut writer);
+        write(&mut writer);
     }
-    RandomProgram {
-        name,
-        text: writer.finish(),
-    }
+    let text = writer.finish();
+    RandomProgram { name, text }
 }
 
 /// Writes the transition between two parts: a rapid, and perhaps a dwell, a tool change, another
@@ -121,7 +81,7 @@ fn polyline(writer: &mut ProgramWriter) {
     while writer.goes_on() {
         let leg_mm = writer.random.by_ratio([0.1, 5.0 * scale]);
         let heading = writer.random.between([-PI, PI]);
-        writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
+        writer.leg(leg_mm, heading);
     }
 }
 
@@ -137,14 +97,8 @@ fn arcs(writer: &mut ProgramWriter) {
         // At least a tenth of a millimetre, or four decimals are no circle.
         let sweep = writer.random.by_ratio([0.2, 3.0]) * (3.0 / radius_mm).min(1.0);
         let to_center = heading + side * 0.5 * PI;
-        writer.arc(
-            [
-                radius_mm * libm::cos(to_center),
-                radius_mm * libm::sin(to_center),
-            ],
-            side * sweep,
-            0.0,
-        );
+        let (x, y) = (libm::cos(to_center), libm::sin(to_center));
+        writer.arc([radius_mm * x, radius_mm * y], side * sweep, 0.0);
         heading += side * sweep;
     }
 }
@@ -154,25 +108,19 @@ fn cam(writer: &mut ProgramWriter) {
     let chord_mm = writer.random.by_ratio([0.02, 0.5]);
     let noise_mm = writer.random.by_ratio([0.0005, 0.02]);
     let waves = [0, 1, 2].map(|_| {
-        (
-            writer.random.by_ratio([2.0, 40.0]),
-            writer.random.between([-1.2, 1.2]),
-        )
+        let length_mm = writer.random.by_ratio([2.0, 40.0]);
+        (length_mm, writer.random.between([-1.2, 1.2]))
     });
-    let [x0, y0, z] = writer.at_mm();
-    let (mut s_mm, mut at) = (0.0, [x0, y0]);
+    let [mut x, mut y, z] = writer.at_mm();
+    let mut s_mm = 0.0;
     while writer.goes_on() {
         s_mm += chord_mm * writer.random.between([0.7, 1.3]);
-        let heading: f64 = waves
-            .iter()
-            .map(|(length_mm, turn)| turn * libm::sin(TAU * s_mm / length_mm))
-            .sum();
-        at = [
-            at[0] + chord_mm * libm::cos(heading),
-            at[1] + chord_mm * libm::sin(heading),
-        ];
+        let turn = |(length_mm, turn): &(f64, f64)| turn * libm::sin(TAU * s_mm / length_mm);
+        let heading: f64 = waves.iter().map(turn).sum();
+        x += chord_mm * libm::cos(heading);
+        y += chord_mm * libm::sin(heading);
         let [dx, dy] = [0, 1].map(|_| writer.random.between([-noise_mm, noise_mm]));
-        writer.line([at[0] + dx, at[1] + dy, z]);
+        writer.line([x + dx, y + dy, z]);
     }
 }
 
@@ -183,16 +131,13 @@ fn spikes(writer: &mut ProgramWriter) {
     while writer.goes_on() {
         let leg_mm = writer.random.between([0.2 * most_mm, most_mm]);
         heading += PI - writer.random.sign() * writer.random.by_ratio([0.01, 0.5]);
-        writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
+        writer.leg(leg_mm, heading);
     }
 }
 
 /// Up, along, down, along: legs that are shorter than the lag.
 fn battlement(writer: &mut ProgramWriter) {
-    let [high_mm, long_mm] = [
-        writer.random.by_ratio([0.1, 2.0]),
-        writer.random.by_ratio([0.1, 2.0]),
-    ];
+    let [high_mm, long_mm] = [0, 1].map(|_| writer.random.by_ratio([0.1, 2.0]));
     let run_in_mm = writer.random.by_ratio([0.5, 10.0]);
     writer.by(run_in_mm, 0.0);
     while writer.goes_on() {
@@ -206,10 +151,8 @@ fn battlement(writer: &mut ProgramWriter) {
 
 /// Narrow slots with round ends, side by side.
 fn slots(writer: &mut ProgramWriter) {
-    let [long_mm, wide_mm] = [
-        writer.random.by_ratio([0.5, 10.0]),
-        writer.random.by_ratio([0.1, 2.0]),
-    ];
+    let long_mm = writer.random.by_ratio([0.5, 10.0]);
+    let wide_mm = writer.random.by_ratio([0.1, 2.0]);
     while writer.goes_on() {
         writer.by(long_mm, 0.0);
         writer.arc([0.0, 0.5 * wide_mm], PI, 0.0);
@@ -218,56 +161,20 @@ fn slots(writer: &mut ProgramWriter) {
     }
 }
 
-/// Strokes of letters in a box of 1 by 2: where they begin, then straight to a place, or half round
-/// to it (left or right).
-const LETTERS: [&[Stroke]; 6] = [
-    // L
-    &[Stroke {
-        from: [0.0, 2.0],
-        to: &[([0.0, 0.0], 0.0), ([1.0, 0.0], 0.0)],
-    }],
-    // S
-    &[Stroke {
-        from: [1.0, 2.0],
-        to: &[
-            ([0.5, 2.0], 0.0),
-            ([0.5, 1.0], 1.0),
-            ([0.5, 0.0], -1.0),
-            ([0.0, 0.0], 0.0),
-        ],
-    }],
-    // D
-    &[Stroke {
-        from: [0.0, 0.0],
-        to: &[([0.0, 2.0], 0.0), ([0.0, 0.0], -1.0)],
-    }],
-    // A
-    &[
-        Stroke {
-            from: [0.0, 0.0],
-            to: &[([0.5, 2.0], 0.0), ([1.0, 0.0], 0.0)],
-        },
-        Stroke {
-            from: [0.25, 1.0],
-            to: &[([0.75, 1.0], 0.0)],
-        },
-    ],
-    // B
-    &[Stroke {
-        from: [0.0, 0.0],
-        to: &[([0.0, 2.0], 0.0), ([0.0, 1.0], -1.0), ([0.0, 0.0], -1.0)],
-    }],
-    // N
-    &[Stroke {
-        from: [0.0, 0.0],
-        to: &[([0.0, 2.0], 0.0), ([1.0, 0.0], 0.0), ([1.0, 2.0], 0.0)],
-    }],
-];
+/// A stroke of a letter: where it begins, then straight to a place, or half round to it (left or
+/// right).
+type Stroke = ([f64; 2], &'static [([f64; 2], f64)]);
 
-struct Stroke {
-    from: [f64; 2],
-    to: &'static [([f64; 2], f64)],
-}
+/// Letters in a box of 1 by 2: L, S, D, A, B, N.
+#[rustfmt::skip]
+const LETTERS: [&[Stroke]; 6] = [
+    &[([0.0, 2.0], &[([0.0, 0.0], 0.0), ([1.0, 0.0], 0.0)])],
+    &[([1.0, 2.0], &[([0.5, 2.0], 0.0), ([0.5, 1.0], 1.0), ([0.5, 0.0], -1.0), ([0.0, 0.0], 0.0)])],
+    &[([0.0, 0.0], &[([0.0, 2.0], 0.0), ([0.0, 0.0], -1.0)])],
+    &[([0.0, 0.0], &[([0.5, 2.0], 0.0), ([1.0, 0.0], 0.0)]), ([0.25, 1.0], &[([0.75, 1.0], 0.0)])],
+    &[([0.0, 0.0], &[([0.0, 2.0], 0.0), ([0.0, 1.0], -1.0), ([0.0, 0.0], -1.0)])],
+    &[([0.0, 0.0], &[([0.0, 2.0], 0.0), ([1.0, 0.0], 0.0), ([1.0, 2.0], 0.0)])],
+];
 
 /// A word, with rapids from stroke to stroke.
 fn letters(writer: &mut ProgramWriter) {
@@ -275,10 +182,10 @@ fn letters(writer: &mut ProgramWriter) {
     let [mut left_mm, bottom_mm, z] = writer.at_mm();
     while writer.goes_on() {
         let letter = LETTERS[writer.random.whole(0, LETTERS.len() as u32 - 1) as usize];
-        for stroke in letter {
+        for (from, strokes) in letter {
             let place = |[x, y]: [f64; 2]| [left_mm + size_mm * x, bottom_mm + size_mm * y, z];
-            writer.rapid(place(stroke.from));
-            for &(to, side) in stroke.to {
+            writer.rapid(place(*from));
+            for &(to, side) in *strokes {
                 if side == 0.0 {
                     writer.line(place(to));
                 } else {
@@ -305,10 +212,8 @@ fn circles(writer: &mut ProgramWriter) {
 
 /// Down in turns.
 fn helix(writer: &mut ProgramWriter) {
-    let (radius_mm, pitch_mm) = (
-        writer.random.by_ratio([0.5, 10.0]),
-        writer.random.by_ratio([0.05, 2.0]),
-    );
+    let radius_mm = writer.random.by_ratio([0.5, 10.0]);
+    let pitch_mm = writer.random.by_ratio([0.05, 2.0]);
     let sweep = writer.random.sign() * TAU;
     while writer.goes_on() {
         writer.arc([-radius_mm, 0.0], sweep, -pitch_mm);
@@ -319,10 +224,8 @@ fn helix(writer: &mut ProgramWriter) {
 
 /// Rectangles from within outwards, layer by layer.
 fn pocket(writer: &mut ProgramWriter) {
-    let (over_mm, deep_mm) = (
-        writer.random.by_ratio([0.1, 2.0]),
-        writer.random.by_ratio([0.05, 1.0]),
-    );
+    let over_mm = writer.random.by_ratio([0.1, 2.0]);
+    let deep_mm = writer.random.by_ratio([0.05, 1.0]);
     let rings = writer.random.whole(2, 6);
     let [x, y, _] = writer.at_mm();
     while writer.goes_on() {
@@ -348,11 +251,9 @@ fn retraced(writer: &mut ProgramWriter) {
     while writer.goes_on() {
         let mut passed = vec![writer.at_mm()];
         for _ in 0..writer.random.whole(1, 6) {
-            let (leg_mm, heading) = (
-                writer.random.by_ratio([0.1, 5.0]),
-                writer.random.between([-PI, PI]),
-            );
-            writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
+            let leg_mm = writer.random.by_ratio([0.1, 5.0]);
+            let heading = writer.random.between([-PI, PI]);
+            writer.leg(leg_mm, heading);
             passed.push(writer.at_mm());
         }
         for &place in passed.iter().rev().skip(1) {
@@ -370,9 +271,10 @@ mod tests {
     const SEEDS: u64 = 400;
 
     fn read(drawn: &RandomProgram) -> Summary {
-        let reader = Reader::from_text(&drawn.name, drawn.text.as_str(), Settings::default())
-            .expect("a program");
-        summarize(reader).unwrap_or_else(|error| panic!("{}\n{error:?}", drawn.text))
+        let text = drawn.text.as_str();
+        let reader = Reader::from_text(&drawn.name, text, Settings::default());
+        summarize(reader.expect("a program"))
+            .unwrap_or_else(|error| panic!("{}\n{error:?}", drawn.text))
     }
 
     #[test]
@@ -381,22 +283,13 @@ mod tests {
         for seed in 0..SEEDS {
             let drawn = program(seed);
             let summary = read(&drawn);
-            let family = FAMILIES
-                .iter()
-                .position(|family| drawn.name.starts_with(family.name))
-                .expect("a family");
+            let is_of = |family: &Family| drawn.name.starts_with(family.0);
+            let family = FAMILIES.iter().position(is_of).expect("a family");
             seen[family] += 1;
-            assert!(
-                summary.motions >= 1 && summary.feed_mm > 0.0,
-                "{}",
-                drawn.text
-            );
-            assert_eq!(
-                summary.moves[2],
-                ["helix", "pocket"].contains(&FAMILIES[family].name),
-                "{}",
-                drawn.text
-            );
+            let text = &drawn.text;
+            assert!(summary.motions >= 1 && summary.feed_mm > 0.0, "{text}");
+            let is_deep = ["helix", "pocket"].contains(&FAMILIES[family].0);
+            assert_eq!(summary.moves[2], is_deep, "{text}");
         }
         assert!(seen.iter().all(|&count| count > 5), "{seen:?}");
     }
@@ -410,9 +303,8 @@ mod tests {
     /// Checks that programs are short, so that thousands of them can be cut.
     #[test]
     fn programs_are_short() {
-        let lines: usize = (0..SEEDS)
-            .map(|seed| program(seed).text.lines().count())
-            .sum();
+        let lines = |seed| program(seed).text.lines().count();
+        let lines: usize = (0..SEEDS).map(lines).sum();
         assert!(lines < 300 * SEEDS as usize, "{lines} lines");
     }
 }

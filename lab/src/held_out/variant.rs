@@ -59,15 +59,13 @@ impl Variant {
 
     /// The machine file.
     pub fn text(&self) -> String {
-        let changed = if self.changes.is_empty() {
-            "as it is"
-        } else {
-            "with the changes below"
+        let changed = match self.changes.is_empty() {
+            true => "as it is",
+            false => "with the changes below",
         };
+        let (base, name) = (self.base, &self.name);
         let mut text = format!(
-            "base = \"{base}\"\nname = \"{}\"\ndescription = \"{base} {changed}\"\nsource = \"generated\"\n",
-            self.name,
-            base = self.base
+            "base = \"{base}\"\nname = \"{name}\"\ndescription = \"{base} {changed}\"\nsource = \"generated\"\n"
         );
         let mut tables: Vec<&str> = Vec::new();
         for change in &self.changes {
@@ -78,10 +76,8 @@ impl Variant {
         for table in tables {
             // Writing to a string does not fail.
             let _ = writeln!(text, "\n[{table}]");
-            for Change { key, value, .. } in
-                self.changes.iter().filter(|change| change.table == table)
-            {
-                let _ = writeln!(text, "{key} = {value:?}");
+            for change in self.changes.iter().filter(|change| change.table == table) {
+                let _ = writeln!(text, "{} = {:?}", change.key, change.value);
             }
         }
         text
@@ -108,32 +104,17 @@ mod tests {
             .with("axis.y", "kp_1_s", 60.0)
             .with("limits", "normal_accel_mm_s2", 1000.0);
         let machine = variant.machine().expect("valid");
-        assert_eq!(
-            (
-                machine.axis(0).kp_1_s,
-                machine.axis(1).kp_1_s,
-                machine.axis(2).kp_1_s
-            ),
-            (40.0, 60.0, 40.0)
-        );
+        let gains = [0, 1, 2].map(|i| machine.axis(i).kp_1_s);
+        assert_eq!(gains, [40.0, 60.0, 40.0]);
         assert_eq!(machine.limits.normal_accel_mm_s2, 1000.0);
         assert_eq!(machine.axis(0).inertia_kg_m2, base.axis(0).inertia_kg_m2);
-        assert_eq!(
-            Variant::of("tnv40", "same")
-                .machine()
-                .expect("valid")
-                .fingerprint(),
-            base.fingerprint()
-        );
+        let same = Variant::of("tnv40", "same").machine().expect("valid");
+        assert_eq!(same.fingerprint(), base.fingerprint());
     }
 
     #[test]
     fn a_key_that_there_is_none_of_is_refused() {
-        assert!(
-            Variant::of("tnv40", "odd")
-                .with("limits", "no_such_key", 1.0)
-                .machine()
-                .is_err()
-        );
+        let odd = Variant::of("tnv40", "odd").with("limits", "no_such_key", 1.0);
+        assert!(odd.machine().is_err());
     }
 }

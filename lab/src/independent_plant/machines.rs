@@ -13,7 +13,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_sim::{Axis, Limits, Machine, MachineError, Period};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::IndependentAxis;
 use super::ball_screw::BallScrew;
@@ -43,7 +43,7 @@ pub struct IndependentMachine {
     /// Name.
     pub name: String,
     /// The built-in machine whose PLC and shape of the limits its data sheet has.
-    kind: &'static str,
+    kind: String,
     /// Rapid and highest feed, mm/s, acceleration, mm/s2, and jerk, mm/s3, of its control.
     limits: [f64; 4],
     /// Its axes.
@@ -51,7 +51,7 @@ pub struct IndependentMachine {
 }
 
 /// Axis data from a data sheet and a drive's parameter list, and data that no document states.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Deserialize)]
 struct AxisSpec {
     lead_mm: f64,
     /// Inertia of rotor, coupling and screw, kg m2.
@@ -97,95 +97,35 @@ struct AxisSpec {
     lead_error_um: f64,
 }
 
-const ROUTER: AxisSpec = AxisSpec {
-    lead_mm: 8.0,
-    rotor_kg_m2: 7e-5,
-    mass_kg: 12.0,
-    swing: [0.06, 0.15],
-    resonance: [50.0, 0.05],
-    backlash_um: 30.0,
-    coulomb: [0.015, 12.0],
-    by_weight: 0.12,
-    stiction: [1.5, 3.0, 8.0],
-    asymmetry: 0.08,
-    viscous: [2e-4, 100.0],
-    load_n: 0.0,
-    winding: [0.45, 1.2e-3, 0.09],
-    ripple: [0.03, 24.0],
-    cogging: [0.012, 48.0],
-    most: [48.0, 12.0],
-    kp_1_s: 25.0,
-    speed_loop_1_s: 120.0,
-    integral_s: 0.04,
-    feedforward: 0.9,
-    speed_filter_s: 1e-3,
-    periods: [8, 2, 2],
-    interpolates: false,
-    encoder_um: [2.0, 8.0, 0.3],
-    scale_um: None,
-    late_periods: 0,
-    lead_error_um: 15.0,
-};
+/// A machine around which others are drawn.
+#[derive(Deserialize)]
+struct MachineSpec {
+    name: String,
+    kind: String,
+    limits: [f64; 4],
+    /// Parts of the mass of x that y and z have.
+    mass: [f64; 2],
+    /// Load of z, N.
+    load_n: f64,
+    x: AxisSpec,
+}
 
-const KNEE_MILL: AxisSpec = AxisSpec {
-    lead_mm: 5.0,
-    rotor_kg_m2: 6e-4,
-    mass_kg: 220.0,
-    swing: [0.03, 0.25],
-    resonance: [75.0, 0.06],
-    backlash_um: 8.0,
-    coulomb: [0.12, 90.0],
-    by_weight: 0.09,
-    stiction: [1.7, 1.5, 5.0],
-    asymmetry: 0.06,
-    viscous: [1e-3, 2500.0],
-    load_n: 0.0,
-    winding: [0.9, 4e-3, 0.55],
-    ripple: [0.02, 18.0],
-    cogging: [0.05, 36.0],
-    most: [160.0, 18.0],
-    kp_1_s: 40.0,
-    speed_loop_1_s: 180.0,
-    integral_s: 0.025,
-    feedforward: 0.95,
-    speed_filter_s: 0.5e-3,
-    periods: [4, 4, 4],
-    interpolates: false,
-    encoder_um: [0.5, 20.0, 0.2],
-    scale_um: None,
-    late_periods: 0,
-    lead_error_um: 8.0,
-};
+impl MachineSpec {
+    fn all() -> Vec<Self> {
+        serde_json::from_str(include_str!("machines.json")).expect("a test reads it")
+    }
 
-const MACHINING_CENTER: AxisSpec = AxisSpec {
-    lead_mm: 16.0,
-    rotor_kg_m2: 6.5e-3,
-    mass_kg: 420.0,
-    swing: [0.04, 0.3],
-    resonance: [110.0, 0.04],
-    backlash_um: 0.0,
-    coulomb: [0.6, 120.0],
-    by_weight: 0.01,
-    stiction: [1.25, 4.0, 12.0],
-    asymmetry: 0.04,
-    viscous: [4e-3, 600.0],
-    load_n: 0.0,
-    winding: [0.35, 4.5e-3, 1.3],
-    ripple: [0.012, 18.0],
-    cogging: [0.25, 36.0],
-    most: [560.0, 50.0],
-    kp_1_s: 60.0,
-    speed_loop_1_s: 300.0,
-    integral_s: 0.012,
-    feedforward: 1.0,
-    speed_filter_s: 0.0,
-    periods: [2, 8, 8],
-    interpolates: true,
-    encoder_um: [0.02, 8.0, 0.02],
-    scale_um: Some([0.02, 20.0, 0.08]),
-    late_periods: 1,
-    lead_error_um: 1.5,
-};
+    /// The axes: y and z have so much of the mass of x, and z carries a load.
+    fn axes(&self) -> [AxisSpec; 3] {
+        let [y, z] = self.mass.map(|part| AxisSpec {
+            mass_kg: part * self.x.mass_kg,
+            asymmetry: -self.x.asymmetry,
+            ..self.x
+        });
+        let load_n = self.load_n;
+        [self.x, y, AxisSpec { load_n, ..z }]
+    }
+}
 
 impl IndependentMachine {
     /// One of [`INDEPENDENT_MACHINES`] by its name.
@@ -193,49 +133,29 @@ impl IndependentMachine {
         let number = INDEPENDENT_MACHINES
             .iter()
             .position(|known| *known == name)?;
-        Some(Self::made(
-            name.to_owned(),
-            number,
-            &mut Random::new(number as u64 + 1),
-            false,
-        ))
+        let mut random = Random::new(number as u64 + 1);
+        Some(Self::made(number, "", &mut random, false))
     }
 
     /// One drawn around them by a seed: the same on every platform.
     pub fn drawn(seed: u64) -> Self {
         let mut random = Random::new(seed);
         let number = random.whole(0, 2) as usize;
-        let name = format!("{}-{seed}", INDEPENDENT_MACHINES[number]);
-        Self::made(name, number, &mut random, true)
+        Self::made(number, &format!("-{seed}"), &mut random, true)
     }
 
     /// Draws phases in any case, because the place where an axis was homed is unknown.
-    fn made(name: String, number: usize, random: &mut Random, differs: bool) -> Self {
-        let (kind, limits, mut specs) = [
-            (
-                "router",
-                [60.0, 50.0, 250.0, 8000.0],
-                three(&ROUTER, [0.75, 0.4], 25.0),
-            ),
-            (
-                "workshop",
-                [100.0, 60.0, 500.0, 20_000.0],
-                three(&KNEE_MILL, [0.6, 1.4], 700.0),
-            ),
-            (
-                "stiff",
-                [400.0, 150.0, 2500.0, 60_000.0],
-                three(&MACHINING_CENTER, [1.3, 0.9], 1500.0),
-            ),
-        ][number];
+    fn made(number: usize, suffix: &str, random: &mut Random, differs: bool) -> Self {
+        let spec = MachineSpec::all().swap_remove(number);
+        let mut axes = spec.axes();
         if differs {
-            specs.iter_mut().for_each(|spec| differ(spec, random));
+            axes.iter_mut().for_each(|spec| differ(spec, random));
         }
         Self {
-            name,
-            kind,
-            limits,
-            axes: specs.map(|spec| axis(&spec, random)),
+            name: spec.name + suffix,
+            kind: spec.kind,
+            limits: spec.limits,
+            axes: axes.map(|spec| axis(&spec, random)),
         }
     }
 
@@ -294,85 +214,35 @@ impl IndependentMachine {
     }
 }
 
-/// The axes of a machine: y and z have so much of the mass of x, and z carries a load.
-fn three(x: &AxisSpec, mass: [f64; 2], load_n: f64) -> [AxisSpec; 3] {
-    let other = |part: f64| AxisSpec {
-        mass_kg: part * x.mass_kg,
-        asymmetry: -x.asymmetry,
-        ..*x
-    };
-    [
-        *x,
-        other(mass[0]),
-        AxisSpec {
-            load_n,
-            ..other(mass[1])
-        },
-    ]
-}
-
 /// Draws every number that differs from machine to machine.
-fn differ(spec: &mut AxisSpec, random: &mut Random) {
+fn differ(it: &mut AxisSpec, random: &mut Random) {
     let [solid, set, rough] = DRAWN;
-    let mut by = |values: &mut [&mut f64], range| {
-        values
-            .iter_mut()
-            .for_each(|value| **value *= random.by_ratio(range));
-    };
-    let AxisSpec {
-        resonance,
-        coulomb,
-        stiction,
-        ripple,
-        cogging,
-        viscous,
-        ..
-    } = spec;
-    by(
-        &mut [&mut resonance[0], &mut spec.rotor_kg_m2, &mut spec.mass_kg],
-        solid,
-    );
-    by(
-        &mut [
-            &mut spec.kp_1_s,
-            &mut spec.speed_loop_1_s,
-            &mut spec.integral_s,
-        ],
-        set,
-    );
-    let [motor, table] = coulomb;
-    by(
-        &mut [
-            motor,
-            table,
-            &mut spec.by_weight,
-            &mut spec.backlash_um,
-            &mut spec.lead_error_um,
-        ],
-        rough,
-    );
-    let [_, stribeck, bending] = stiction;
-    by(
-        &mut [stribeck, bending, &mut ripple[0], &mut cogging[0]],
-        rough,
-    );
-    let [motor, table] = viscous;
-    by(
-        &mut [motor, table, &mut resonance[1], &mut spec.swing[0]],
-        rough,
-    );
-    by(
-        &mut [
-            &mut spec.encoder_um[2],
-            &mut spec.asymmetry,
-            &mut spec.load_n,
-        ],
-        rough,
-    );
-    spec.feedforward = (spec.feedforward * random.between([0.9, 1.05])).min(1.0);
-    spec.periods[2] = random.whole(1, 2 * spec.periods[2]);
+    let mut by = |value: &mut f64, range| *value *= random.by_ratio(range);
+    by(&mut it.resonance[0], solid);
+    by(&mut it.rotor_kg_m2, solid);
+    by(&mut it.mass_kg, solid);
+    by(&mut it.kp_1_s, set);
+    by(&mut it.speed_loop_1_s, set);
+    by(&mut it.integral_s, set);
+    it.coulomb.iter_mut().for_each(|value| by(value, rough));
+    by(&mut it.by_weight, rough);
+    by(&mut it.backlash_um, rough);
+    by(&mut it.lead_error_um, rough);
+    it.stiction[1..]
+        .iter_mut()
+        .for_each(|value| by(value, rough));
+    by(&mut it.ripple[0], rough);
+    by(&mut it.cogging[0], rough);
+    it.viscous.iter_mut().for_each(|value| by(value, rough));
+    by(&mut it.resonance[1], rough);
+    by(&mut it.swing[0], rough);
+    by(&mut it.encoder_um[2], rough);
+    by(&mut it.asymmetry, rough);
+    by(&mut it.load_n, rough);
+    it.feedforward = (it.feedforward * random.between([0.9, 1.05])).min(1.0);
+    it.periods[2] = random.whole(1, 2 * it.periods[2]);
     if random.one_in(2) {
-        spec.asymmetry = -spec.asymmetry;
+        it.asymmetry = -it.asymmetry;
     }
 }
 
@@ -386,13 +256,8 @@ fn axis(spec: &AxisSpec, random: &mut Random) -> IndependentAxis {
     let [motor_nm, guide_n] = spec.coulomb;
     let guide_n = guide_n + spec.by_weight * spec.mass_kg * GRAVITY_M_S2;
     let friction = |coulomb: f64, per: f64, viscous: f64, mass: f64| {
-        let bristles = LuGre::new(
-            coulomb,
-            stiction,
-            1e-3 * stribeck_mm_s * per,
-            1e-6 * bending_um * per,
-            mass,
-        );
+        let (stribeck, bending) = (1e-3 * stribeck_mm_s * per, 1e-6 * bending_um * per);
+        let bristles = LuGre::new(coulomb, stiction, stribeck, bending, mass);
         LuGre {
             viscous,
             asymmetry: spec.asymmetry,
@@ -474,17 +339,19 @@ mod tests {
 
     #[test]
     fn machines_are_the_same_again_differ_from_each_other_and_have_data_sheets_that_read_back() {
+        assert!(
+            MachineSpec::all()
+                .iter()
+                .map(|spec| &spec.name[..])
+                .eq(INDEPENDENT_MACHINES)
+        );
         let named = INDEPENDENT_MACHINES.map(|name| IndependentMachine::named(name).unwrap());
-        let all: Vec<IndependentMachine> = named
-            .into_iter()
-            .chain((0..20).map(IndependentMachine::drawn))
-            .collect();
+        let mut all = named.to_vec();
+        all.extend((0..20).map(IndependentMachine::drawn));
         for (i, machine) in all.iter().enumerate() {
-            assert!(
-                all[..i]
-                    .iter()
-                    .all(|other| other.axes != machine.axes && other.name != machine.name)
-            );
+            let is_other =
+                |it: &IndependentMachine| it.axes != machine.axes && it.name != machine.name;
+            assert!(all[..i].iter().all(is_other));
             let sheet = machine.sheet().unwrap();
             assert_eq!(Machine::parse("sheet.toml", &sheet.text()).unwrap(), sheet);
         }

@@ -115,10 +115,8 @@ impl WoundMotor {
     /// Torque constant at an angle, N m/A, and its derivative by the angle.
     fn constant(&self, angle_rad: f64) -> [f64; 2] {
         let [ripple, slope] = wave(self.ripple, angle_rad);
-        [
-            self.torque_nm_a * ripple + self.torque_nm_a,
-            self.torque_nm_a * slope,
-        ]
+        let mean = self.torque_nm_a;
+        [mean * ripple + mean, mean * slope]
     }
 
     /// Torque at a current, N m.
@@ -144,16 +142,11 @@ impl FeedAxis {
     /// Returns the state at rest with the motor at an angle or, where `is_table` is true, with the
     /// table at a position; the load is carried.
     pub(super) fn at_rest(&self, place_m: f64, is_table: bool) -> FeedState {
-        let Self {
-            motor,
-            screw,
-            table,
-        } = self;
+        let (motor, screw, table) = (&self.motor, &self.screw, &self.table);
         let lead_m = screw.lead_under(table.load_n);
-        let (nut_m, table_m) = if is_table {
-            (place_m + lead_m, place_m)
-        } else {
-            (place_m, place_m - lead_m)
+        let (nut_m, table_m) = match is_table {
+            true => (place_m + lead_m, place_m),
+            false => (place_m, place_m - lead_m),
         };
         let motor_rad = nut_m / screw.travel_m_rad;
         let held_nm = screw.travel_m_rad * table.load_n + wave(motor.cogging, motor_rad)[0];
@@ -175,16 +168,13 @@ impl FeedAxis {
         let mut state = self.following(from, &rates, speeds, volts, half_s);
         for _ in 0..MOST_ROUNDS {
             let end = self.rates(&state, volts, half_s);
-            let left: [f64; 2] = std::array::from_fn(|i| {
-                speeds[i] - start[i] - half_s * (rates.speeds[i] + end.speeds[i])
-            });
+            let left =
+                [0, 1].map(|i| speeds[i] - start[i] - half_s * (rates.speeds[i] + end.speeds[i]));
             let [[a, b], [c, d]] = end.slopes.map(|row| row.map(|slope| -half_s * slope));
             let (a, d) = (1.0 + a, 1.0 + d);
             let determinant = a * d - b * c;
-            let change = [
-                (d * left[0] - b * left[1]) / determinant,
-                (a * left[1] - c * left[0]) / determinant,
-            ];
+            let [x, y] = [d * left[0] - b * left[1], a * left[1] - c * left[0]];
+            let change = [x / determinant, y / determinant];
             speeds = [speeds[0] - change[0], speeds[1] - change[1]];
             state = self.following(from, &rates, speeds, volts, half_s);
             if change[0].abs() <= SMALL[0] && change[1].abs() <= SMALL[1] {
@@ -227,28 +217,16 @@ impl FeedAxis {
 
     /// Rates of a state.
     fn rates(&self, state: &FeedState, volts: f64, half_s: f64) -> Rates {
-        let Self {
-            motor,
-            screw,
-            table,
-        } = self;
-        let FeedState {
-            current_a,
-            motor_rad_s: w,
-            motor_rad,
-            table_m_s: v,
-            table_m,
-            bristles,
-        } = *state;
+        let (motor, screw, table) = (&self.motor, &self.screw, &self.table);
+        let (current_a, w, v) = (state.current_a, state.motor_rad_s, state.table_m_s);
+        let (motor_rad, table_m, bristles) = (state.motor_rad, state.table_m, state.bristles);
         let travel = screw.travel_m_rad;
         let [constant, constant_slope] = motor.constant(motor_rad);
         let [cogging, cogging_slope] = wave(motor.cogging, motor_rad);
         let force = screw.force(travel * motor_rad - table_m, travel * w - v);
         let by_nut = half_s * force.slopes[0] + force.slopes[1];
-        let [at_motor, at_table] = [
-            motor.friction.at(w, bristles[0]),
-            table.friction.at(v, bristles[1]),
-        ];
+        let at_motor = motor.friction.at(w, bristles[0]);
+        let at_table = table.friction.at(v, bristles[1]);
         let [mass, mass_slope, mass_bend] = table.mass(table_m);
 
         let electrical = 1.0 + half_s * motor.resistance_ohm / motor.inductance_h;
@@ -263,36 +241,27 @@ impl FeedAxis {
         let table_m_s2 = pull_n / mass;
         let pull_slope =
             -by_nut - at_table.slope(half_s) - mass_slope * v - 0.5 * half_s * mass_bend * v * v;
+        let inertia = motor.inertia_kg_m2;
+        let pull_slope = pull_slope - half_s * mass_slope * table_m_s2;
+        let left_v = volts - motor.resistance_ohm * current_a - constant * w;
         Rates {
-            current_a_s: (volts - motor.resistance_ohm * current_a - constant * w)
-                / motor.inductance_h,
-            speeds: [torque_nm / motor.inertia_kg_m2, table_m_s2],
+            current_a_s: left_v / motor.inductance_h,
+            speeds: [torque_nm / inertia, table_m_s2],
             bristles: [at_motor.rate, at_table.rate],
             slopes: [
-                [
-                    torque_slope / motor.inertia_kg_m2,
-                    travel * by_nut / motor.inertia_kg_m2,
-                ],
-                [
-                    travel * by_nut / mass,
-                    (pull_slope - half_s * mass_slope * table_m_s2) / mass,
-                ],
+                [torque_slope / inertia, travel * by_nut / inertia],
+                [travel * by_nut / mass, pull_slope / mass],
             ],
         }
     }
 
     /// Energy that is stored in motion, springs, bristles, winding, cogging and height, J.
     pub fn energy_j(&self, state: &FeedState) -> f64 {
-        let Self {
-            motor,
-            screw,
-            table,
-        } = self;
+        let (motor, screw, table) = (&self.motor, &self.screw, &self.table);
         let [amplitude_nm, per_rad, phase_rad] = motor.cogging;
-        let cogging_j = if amplitude_nm == 0.0 {
-            0.0
-        } else {
-            -amplitude_nm / per_rad * libm::cos(per_rad * state.motor_rad + phase_rad)
+        let cogging_j = match amplitude_nm == 0.0 {
+            true => 0.0,
+            false => -amplitude_nm / per_rad * libm::cos(per_rad * state.motor_rad + phase_rad),
         };
         0.5 * motor.inductance_h * state.current_a.powi(2)
             + 0.5 * motor.inertia_kg_m2 * state.motor_rad_s.powi(2)
@@ -306,24 +275,22 @@ impl FeedAxis {
 
     /// Returns the power that friction, damping and the winding dissipate, W.
     pub fn loss_w(&self, state: &FeedState) -> f64 {
-        let Self {
-            motor,
-            screw,
-            table,
-        } = self;
+        let (motor, screw, table) = (&self.motor, &self.screw, &self.table);
         motor.resistance_ohm * state.current_a.powi(2)
             + motor.friction.loss_w(state.motor_rad_s, state.bristles[0])
             + table.friction.loss_w(state.table_m_s, state.bristles[1])
-            + screw.loss_w(
-                self.nut_lead_m(state),
-                screw.travel_m_rad * state.motor_rad_s - state.table_m_s,
-            )
+            + screw.loss_w(self.nut_lead_m(state), self.nut_rate_m_s(state))
     }
 
     /// Force of the screw on the table, N.
     pub fn screw_force_n(&self, state: &FeedState) -> f64 {
-        let rate_m_s = self.screw.travel_m_rad * state.motor_rad_s - state.table_m_s;
-        self.screw.force(self.nut_lead_m(state), rate_m_s).force_n
+        let (lead_m, rate_m_s) = (self.nut_lead_m(state), self.nut_rate_m_s(state));
+        self.screw.force(lead_m, rate_m_s).force_n
+    }
+
+    /// Returns the rate of that lead, m/s.
+    fn nut_rate_m_s(&self, state: &FeedState) -> f64 {
+        self.screw.travel_m_rad * state.motor_rad_s - state.table_m_s
     }
 
     /// Returns the lead of the nut over the table, m.

@@ -86,10 +86,8 @@ fn groups(rows: &[SweepRow]) -> Vec<MismatchGroup> {
             names.push(name);
         }
     }
-    names
-        .into_iter()
-        .filter_map(|name| MismatchGroup::of(name, rows))
-        .collect()
+    let group = |name| MismatchGroup::of(name, rows);
+    names.into_iter().filter_map(group).collect()
 }
 
 /// Machine of the model.
@@ -104,40 +102,37 @@ impl MismatchGroup {
         };
         let cuts: Vec<&SweepRow> = rows.iter().filter(is_of).collect();
         let same = same_name(of_model);
-        let later_ratio = |row: &&SweepRow| {
-            let of_same = cuts
-                .iter()
-                .find(|other| other.machine == same && other.program == row.program)?;
+        let later_ratio = |row: &SweepRow| {
+            let is_same = |it: &&&SweepRow| it.machine == same && it.program == row.program;
+            let of_same = cuts.iter().find(is_same)?;
             Some(row.corrected.later_rms_um? / of_same.corrected.later_rms_um?)
         };
-        let others = cuts.iter().copied().filter(|row| row.machine != same);
+        let others = cuts.iter().filter(|row| row.machine != same);
+        let later = others.filter_map(|row| later_ratio(row)).collect();
         let faults: Vec<Vec<Failure>> = cuts.iter().map(|row| row.faults()).collect();
+        let having = |is_it: fn(&Failure) -> bool| {
+            faults
+                .iter()
+                .filter(|faults| faults.iter().any(is_it))
+                .count()
+        };
         Some(Self {
             model: of_model.to_owned(),
             controller: controller.to_owned(),
             rms_ratio: Quantiles::of(cuts.iter().map(|row| row.rms_ratio()).collect())?,
-            worse: faults
-                .iter()
-                .filter(|faults| faults.iter().any(|fault| *fault != Failure::Lost))
-                .count(),
-            lost: faults
-                .iter()
-                .filter(|faults| faults.contains(&Failure::Lost))
-                .count(),
-            later_ratio: Quantiles::of(others.filter_map(|row| later_ratio(&row)).collect()),
+            worse: having(|fault| *fault != Failure::Lost),
+            lost: having(|fault| *fault == Failure::Lost),
+            later_ratio: Quantiles::of(later),
         })
     }
 
     /// Compares the group with the best of the others by the same models.
     fn beside(&self, all: &[Self]) -> MismatchVerdict {
-        let others = all
-            .iter()
-            .filter(|group| group.model == self.model && group.controller != self.controller);
+        let is_other = |it: &&Self| it.model == self.model && it.controller != self.controller;
+        let others = all.iter().filter(is_other);
         let best = others.min_by(|a, b| a.rms_ratio.median.total_cmp(&b.rms_ratio.median));
-        let (median, peer_median) = (
-            self.rms_ratio.median,
-            best.map(|best| best.rms_ratio.median),
-        );
+        let median = self.rms_ratio.median;
+        let peer_median = best.map(|best| best.rms_ratio.median);
         MismatchVerdict {
             model: self.model.clone(),
             ours: self.controller.clone(),

@@ -53,25 +53,20 @@ impl Figures {
     /// purpose.
     pub(crate) fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
         // The uncorrected cut has nothing that could be taken out of the loop.
-        let left = run
-            .faded_out
-            .filter(|_| entry.name != BASELINE && !run.engaged_at_end);
-        let lost = match (run.outcome, left) {
-            (Outcome::Diverged { at_s }, _) => Some(format!("the loop diverged at {at_s:.3} s")),
-            (Outcome::Completed, Some(left)) => Some(format!(
-                "uncorrected from {:.3} s on: {}",
-                left.at_s, left.cause
-            )),
-            (Outcome::Completed, None) => None,
+        let can_leave = entry.name != BASELINE && !run.engaged_at_end;
+        let left = run.faded_out.filter(|_| can_leave);
+        let lost = match run.outcome {
+            Outcome::Diverged { at_s } => Some(format!("the loop diverged at {at_s:.3} s")),
+            Outcome::Completed => {
+                left.map(|left| format!("uncorrected from {:.3} s on: {}", left.at_s, left.cause))
+            }
         };
-        let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
-        let (uncut_um, engaged_share) = (Some(run.uncut_mm * 1e3), Some(run.engaged_share));
         Self {
-            rms_um,
-            max_um,
-            uncut_um,
+            rms_um: statistics.rms_um(),
+            max_um: statistics.max_um(),
+            uncut_um: Some(run.uncut_mm * 1e3),
             later_rms_um: None,
-            engaged_share,
+            engaged_share: Some(run.engaged_share),
             lost,
             time_s: run.time_s,
         }
@@ -170,25 +165,18 @@ pub struct Cutter {
 impl Cutter {
     /// Starts with a machine to make controllers for; nothing is identified yet.
     pub fn new(model: &Arc<Machine>, options: &SweepOptions) -> Self {
-        let entries: Vec<_> = [&UNCORRECTED]
-            .into_iter()
-            .chain(options.controllers.iter().copied())
-            .collect();
+        let entries = [&[&UNCORRECTED][..], &options.controllers].concat();
         let choices = Choices {
             seed: options.seed,
             set: options.set_for(model),
             ..Choices::default()
         };
-        let (plane, space) = (
-            entries.iter().map(|_| None).collect(),
-            entries.iter().map(|_| None).collect(),
-        );
         Self {
             model: model.clone(),
             choices,
+            plane: entries.iter().map(|_| None).collect(),
+            space: entries.iter().map(|_| None).collect(),
             entries,
-            plane,
-            space,
         }
     }
 
@@ -202,33 +190,14 @@ impl Cutter {
         &mut self,
         way: usize,
         program: &SweepProgram,
-        run: Run<'_>,
-        servo_s: f64,
+        run: (Run<'_>, f64),
     ) -> Result<Figures, Cancelled> {
-        let Self {
-            model,
-            choices,
-            entries,
-            plane,
-            space,
-        } = self;
-        let mut setup = Setup::new(model, choices);
+        let mut setup = Setup::new(&self.model, &self.choices);
+        let entry = self.entries[way];
         match program.axes {
-            2 => once(
-                &mut plane[way],
-                entries[way],
-                &mut setup,
-                program,
-                (run, servo_s),
-            ),
-            _ if model.axis_count() < 3 => Ok(Figures::failed("the machine has no Z")),
-            _ => once(
-                &mut space[way],
-                entries[way],
-                &mut setup,
-                program,
-                (run, servo_s),
-            ),
+            2 => once(&mut self.plane[way], entry, &mut setup, program, run),
+            _ if self.model.axis_count() < 3 => Ok(Figures::failed("the machine has no Z")),
+            _ => once(&mut self.space[way], entry, &mut setup, program, run),
         }
     }
 
@@ -244,8 +213,8 @@ impl Cutter {
     ) -> Result<Vec<SweepRow>, Cancelled> {
         let plan = PlanCache::default();
         let run = Run::on(machine).sharing(&plan).watched(watch);
-        let servo_s = machine.period.servo_s;
-        let mut uncorrected = self.cut(0, program, run, servo_s)?;
+        let run = (run, machine.period.servo_s);
+        let mut uncorrected = self.cut(0, program, run)?;
         if uncorrected.lost.as_deref() == Some(PANICKED) {
             // It is judged: so are the others, which panic too.
             uncorrected = Figures::default();
@@ -259,7 +228,7 @@ impl Cutter {
                 controller: self.entries[way].name.to_owned(),
                 rigid: is_rigid(machine),
                 uncorrected: uncorrected.clone(),
-                corrected: self.cut(way, program, run, servo_s)?,
+                corrected: self.cut(way, program, run)?,
             })
         };
         ways.map(row).collect()
@@ -279,18 +248,14 @@ where
 {
     let done = catch_unwind(AssertUnwindSafe(|| {
         let controller = made.get_or_insert_with(|| Make::make(entry, setup));
-        let (mut statistics, mut later) = (
-            Statistics::new(),
-            LaterError {
-                servo_s,
-                ..Default::default()
-            },
-        );
+        let mut statistics = Statistics::new();
+        let mut later = LaterError {
+            servo_s,
+            ..Default::default()
+        };
         let sinks: &mut [&mut dyn Sink] = &mut [&mut statistics, &mut later];
-        match run
-            .laps(entry.laps)
-            .cut_steps(&program.steps, &mut **controller, sinks)
-        {
+        let run = run.laps(entry.laps);
+        match run.cut_steps(&program.steps, &mut **controller, sinks) {
             Ok(run) => Ok(Figures {
                 later_rms_um: later.rms_um(),
                 ..Figures::of(&run, &statistics, entry)
@@ -316,10 +281,7 @@ mod tests {
     #[test]
     fn a_circle_is_cut_better_with_the_controllers_than_without() {
         let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
-        let length = Length {
-            machine: &machine,
-            limit_s: 10.0,
-        };
+        let length = Length(&machine, 10.0);
         let program = SweepProgram::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length)
             .expect("a program");
         let best = CONTROLLERS.find(BEST).expect("in the table");

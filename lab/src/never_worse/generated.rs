@@ -46,13 +46,10 @@ pub fn draw(
         let machine = Arc::new(variant.machine().expect("only valid machines are drawn"));
         for _ in 0..for_each {
             let drawn = programs::program(seeds.random_range(0..SEEDS));
-            let length = Length {
-                machine: &machine,
-                limit_s: LIMIT_S,
-            };
-            let program = Arc::new(SweepProgram::from_text(&drawn.name, &drawn.text, length)?);
+            let length = Length(&machine, LIMIT_S);
+            let program = SweepProgram::from_text(&drawn.name, &drawn.text, length)?;
             let job = SweepJob {
-                program,
+                program: Arc::new(program),
                 machine: machine.clone(),
                 model: machine.clone(),
             };

@@ -27,10 +27,11 @@ const UNLIKE: f64 = 1.5;
 /// None as long as the changes are within the ranges of a machine file, which a test holds.
 pub(crate) fn machines() -> Result<Vec<Machine>, MachineError> {
     let built_in = BUILT_IN_MACHINES.map(|name| Machine::load(name.as_ref()));
-    built_in
+    let variants = variants();
+    let all = built_in
         .into_iter()
-        .chain(variants().iter().map(Variant::machine))
-        .collect()
+        .chain(variants.iter().map(Variant::machine));
+    all.collect()
 }
 
 fn variants() -> Vec<Variant> {
@@ -38,24 +39,23 @@ fn variants() -> Vec<Variant> {
     let base = Machine::load(BASE.as_ref()).expect("the base is built in");
     let y = base.axis(1);
     let mut all = Vec::new();
-    all.extend(KP_1_S.map(|kp| named(format!("kp{kp}")).with_axes("kp_1_s", kp)));
-    all.extend(ACCEL_MM_S2.map(|accel| {
+    for kp in KP_1_S {
+        all.push(named(format!("kp{kp}")).with_axes("kp_1_s", kp));
+    }
+    for accel in ACCEL_MM_S2 {
         let along = named(format!("accel{accel}")).with("limits", "tangential_accel_mm_s2", accel);
-        along.with("limits", "normal_accel_mm_s2", accel)
-    }));
-    all.extend(
-        ENCODER_UM.map(|step| named(format!("encoder{step}um")).with_axes("encoder_step_um", step)),
-    );
-    all.extend(
-        DELAY_MS
-            .map(|delay| named(format!("delay{delay}ms")).with_axes("drive_delay_s", delay * 1e-3)),
-    );
-    all.push(named("unlike-gain".to_owned()).with("axis.y", "kp_1_s", UNLIKE * y.kp_1_s));
-    all.push(named("unlike-inertia".to_owned()).with(
-        "axis.y",
-        "inertia_kg_m2",
-        UNLIKE * y.inertia_kg_m2,
-    ));
+        all.push(along.with("limits", "normal_accel_mm_s2", accel));
+    }
+    for step in ENCODER_UM {
+        all.push(named(format!("encoder{step}um")).with_axes("encoder_step_um", step));
+    }
+    for delay in DELAY_MS {
+        all.push(named(format!("delay{delay}ms")).with_axes("drive_delay_s", delay * 1e-3));
+    }
+    let unlike =
+        |name: &str, key, value| named(name.to_owned()).with("axis.y", key, UNLIKE * value);
+    all.push(unlike("unlike-gain", "kp_1_s", y.kp_1_s));
+    all.push(unlike("unlike-inertia", "inertia_kg_m2", y.inertia_kg_m2));
     all
 }
 
@@ -66,10 +66,7 @@ mod tests {
     #[test]
     fn all_are_machines_and_no_name_comes_twice() {
         let machines = machines().expect("all are valid");
-        let mut names: Vec<&str> = machines
-            .iter()
-            .map(|machine| machine.name.as_str())
-            .collect();
+        let mut names: Vec<&str> = machines.iter().map(|machine| &machine.name[..]).collect();
         assert_eq!(names.len(), 19);
         names.sort_unstable();
         names.dedup();

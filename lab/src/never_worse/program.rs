@@ -29,14 +29,10 @@ pub struct SweepProgram {
     pub steps: Vec<Step>,
 }
 
-/// Part of a program to cut.
+/// The part of a program that is cut: a machine, and the most machining time on it, s. The same part
+/// is then cut on all other machines.
 #[derive(Debug, Clone, Copy)]
-pub struct Length<'a> {
-    /// The machine whose time counts; the same part of the program is then cut on all others.
-    pub machine: &'a Machine,
-    /// Most machining time on it, s.
-    pub limit_s: f64,
-}
+pub struct Length<'a>(pub &'a Machine, pub f64);
 
 impl SweepProgram {
     /// The program in a file.
@@ -65,85 +61,69 @@ impl SweepProgram {
         open: impl Fn() -> Result<Reader, ReadError>,
         length: Length<'_>,
     ) -> Result<Self, JobError> {
-        let summary = summarize(open()?)?;
-        let axes = if summary.moves[2] { 3 } else { 2 };
+        let axes = if summarize(open()?)?.moves[2] { 3 } else { 2 };
         let steps = Box::new(Pieces::new(open()?.map_while(Result::ok)));
-        let planned = planned(steps, length)?;
-        if let Some(fault) = planned.fault {
-            return Err(JobError::Path { part: name, fault });
-        }
-        let Part {
-            steps,
-            time_s: machining_s,
-            shortened,
-            ..
-        } = planned;
-        Ok(Self {
+        let mut program = Self {
             name,
             axes,
-            machining_s,
-            shortened,
-            key: key(axes, &steps),
-            steps,
-        })
-    }
-}
-
-/// Part of a path that is cut.
-struct Part {
-    steps: Vec<Step>,
-    time_s: f64,
-    shortened: bool,
-    fault: Option<PathError>,
-}
-
-/// Plans the path until its time is over, and keeps it as far as the end of the motion that is
-/// under way then.
-fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
-    let (keep, kept) = mpsc::channel();
-    let mut ended = false;
-    let read = steps.map(move |step| step.map(|step| first_part(step, length.limit_s, &mut ended)));
-    let read = read
-        .take_while(|step| !matches!(step, Ok(None)))
-        .filter_map(Result::transpose);
-    let read = read.inspect(move |step| {
-        if let Ok(step) = step {
-            // The other end is there as long as the plan is.
-            let _ = keep.send(step.clone());
+            machining_s: 0.0,
+            shortened: false,
+            key: String::new(),
+            steps: Vec::new(),
+        };
+        if let Some(fault) = program.plan(steps, length)? {
+            let part = program.name;
+            return Err(JobError::Path { part, fault });
         }
-    });
-    let constraints = Constraints::from(length.machine);
-    let mut plan = Plan::new(
-        Box::new(read),
-        &constraints,
-        &FEED_PLANNERS[0],
-        Plc::from(length.machine),
-    )?;
-    let (mut time_s, mut last) = (0.0, None);
-    for planned in &mut plan {
-        if let Planned::Phase(phase) = planned {
-            time_s = phase.tau_s + phase.duration_s;
-            if time_s > length.limit_s {
-                last = Some(phase.piece);
-                break;
+        program.key = key(axes, &program.steps);
+        Ok(program)
+    }
+
+    /// Plans the path until its time is over, and keeps it as far as the end of the motion that is
+    /// under way then.
+    fn plan(
+        &mut self,
+        steps: Steps<'_>,
+        Length(machine, limit_s): Length<'_>,
+    ) -> Result<Option<PathError>, LimitsError> {
+        let (keep, kept) = mpsc::channel();
+        let mut ended = false;
+        let read = steps
+            .map(move |step| step.map(|step| first_part(step, limit_s, &mut ended)))
+            .take_while(|step| !matches!(step, Ok(None)))
+            .filter_map(Result::transpose)
+            .inspect(move |step| {
+                if let Ok(step) = step {
+                    // The other end is there as long as the plan is.
+                    let _ = keep.send(step.clone());
+                }
+            });
+        let constraints = Constraints::from(machine);
+        let (planner, plc) = (&FEED_PLANNERS[0], Plc::from(machine));
+        let mut plan = Plan::new(Box::new(read), &constraints, planner, plc)?;
+        let mut last = None;
+        for planned in &mut plan {
+            if let Planned::Phase(phase) = planned {
+                self.machining_s = phase.tau_s + phase.duration_s;
+                if self.machining_s > limit_s {
+                    last = Some(phase.piece);
+                    break;
+                }
             }
         }
+        let fault = plan.fault().cloned();
+        drop(plan);
+        // The plan looks ahead: what it has read beyond that motion is left out.
+        let mut pieces = 0;
+        let within = |step: &Step| {
+            let is_within = last.is_none_or(|last| pieces <= last);
+            pieces += u64::from(matches!(step, Step::Piece(_)));
+            is_within
+        };
+        self.steps = kept.into_iter().take_while(within).collect();
+        self.shortened = last.is_some();
+        Ok(fault)
     }
-    let fault = plan.fault().cloned();
-    drop(plan);
-    // The plan looks ahead: what it has read beyond that motion is left out.
-    let mut pieces = 0;
-    let within = |step: &Step| {
-        let is_within = last.is_none_or(|last| pieces <= last);
-        pieces += u64::from(matches!(step, Step::Piece(_)));
-        is_within
-    };
-    Ok(Part {
-        steps: kept.into_iter().take_while(within).collect(),
-        time_s,
-        shortened: last.is_some(),
-        fault,
-    })
 }
 
 /// A step, or the first part of a motion that takes longer than the limit by itself and ends the
@@ -186,15 +166,7 @@ mod tests {
 
     fn program(limit_s: f64) -> SweepProgram {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        SweepProgram::from_text(
-            "lines",
-            TEXT,
-            Length {
-                machine: &machine,
-                limit_s,
-            },
-        )
-        .expect("a program")
+        SweepProgram::from_text("lines", TEXT, Length(&machine, limit_s)).expect("a program")
     }
 
     #[test]
@@ -212,10 +184,7 @@ mod tests {
     #[test]
     fn a_motion_that_takes_longer_than_the_limit_is_left_early() {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        let length = Length {
-            machine: &machine,
-            limit_s: 10.0,
-        };
+        let length = Length(&machine, 10.0);
         let slow = SweepProgram::from_text("slow", "G21 F60\nG2 X0 Y0 I5 J0\nG1 X10\nM2\n", length)
             .expect("a program");
         assert!(
@@ -233,10 +202,7 @@ mod tests {
     #[test]
     fn a_program_with_mistakes_is_refused() {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        let length = Length {
-            machine: &machine,
-            limit_s: 1.0,
-        };
+        let length = Length(&machine, 1.0);
         assert!(SweepProgram::from_text("wrong", "G1 X[oops\nM2\n", length).is_err());
         assert!(SweepProgram::from_text("still", "M2\n", length).is_err());
     }

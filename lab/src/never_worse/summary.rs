@@ -90,37 +90,28 @@ impl SweepSummary {
             .map(|judged| judged.row.uncorrected.time_s)
             .sum();
         // Stable: equals stay in order.
-        rows.sort_by(|a, b| {
-            let by_severity = if a.faults.is_empty() {
-                std::cmp::Ordering::Equal
-            } else {
-                b.severity.total_cmp(&a.severity)
-            };
-            a.faults
-                .is_empty()
-                .cmp(&b.faults.is_empty())
-                .then(by_severity)
+        rows.sort_by(|a, b| match (a.faults.is_empty(), b.faults.is_empty()) {
+            (false, false) => b.severity.total_cmp(&a.severity),
+            (is_good, other) => is_good.cmp(&other),
         });
         let judged: Vec<&Judged> = rows
             .iter()
             .filter(|judged| judged.row.is_judged())
             .collect();
         let having = |fault: Failure| {
-            judged
+            let having = judged
                 .iter()
-                .filter(|judged| judged.faults.contains(&fault))
-                .count()
+                .filter(|judged| judged.faults.contains(&fault));
+            (fault, having.count())
         };
-        let ratios = |wanted: &dyn Fn(&SweepRow) -> bool| {
-            let ratios = judged
-                .iter()
-                .filter(|judged| wanted(&judged.row))
-                .map(|judged| judged.row.rms_ratio());
-            Quantiles::of(ratios.collect())
+        let ratios = |wanted: fn(&SweepRow) -> bool| {
+            let wanted = judged.iter().filter(|judged| wanted(&judged.row));
+            Quantiles::of(wanted.map(|judged| judged.row.rms_ratio()).collect())
         };
         let shares = judged
             .iter()
             .filter_map(|judged| judged.row.corrected.engaged_share);
+        let shares = Quantiles::of(shares.collect());
         Self {
             judged: judged.len(),
             not_judged: rows.len() - judged.len(),
@@ -128,10 +119,10 @@ impl SweepSummary {
                 .iter()
                 .filter(|judged| !judged.faults.is_empty())
                 .count(),
-            by_fault: Failure::ALL.map(|fault| (fault, having(fault))).to_vec(),
-            rms_ratio: ratios(&|_| true),
-            rms_ratio_rigid: ratios(&|row| row.rigid && row.uncorrected.rms_um > UNCORRECTED_UM),
-            engaged_share: Quantiles::of(shares.collect()).map(|quantiles| quantiles.median),
+            by_fault: Failure::ALL.map(having).to_vec(),
+            rms_ratio: ratios(|_| true),
+            rms_ratio_rigid: ratios(|row| row.rigid && row.uncorrected.rms_um > UNCORRECTED_UM),
+            engaged_share: shares.map(|quantiles| quantiles.median),
             machining_s,
             rows,
         }
@@ -152,36 +143,28 @@ mod tests {
         ];
         let summary = SweepSummary::of(rows);
         assert_eq!((summary.judged, summary.worse), (3, 2));
-        let maxima: Vec<f64> = summary
+        let maxima = summary
             .rows
             .iter()
-            .map(|judged| judged.row.corrected.max_um)
-            .collect();
-        assert_eq!(maxima, [400.0, 20.0, 0.2]);
-        assert_eq!(
-            summary.by_fault,
-            [
-                (Failure::Rms, 1),
-                (Failure::Max, 1),
-                (Failure::Uncut, 0),
-                (Failure::Lost, 0)
-            ]
+            .map(|judged| judged.row.corrected.max_um);
+        assert!(maxima.eq([400.0, 20.0, 0.2]));
+        let counts = summary.by_fault.iter().map(|(_, count)| *count);
+        assert!(counts.eq([1, 1, 0, 0]) && Failure::ALL[1] == Failure::Max);
+        assert!(
+            summary
+                .by_fault
+                .iter()
+                .map(|(fault, _)| *fault)
+                .eq(Failure::ALL)
         );
     }
 
     #[test]
     fn quantiles_are_those_of_the_sorted_values() {
-        let quantiles =
-            Quantiles::of((1..=100).rev().map(f64::from).collect()).expect("there are values");
-        assert_eq!(
-            (
-                quantiles.median,
-                quantiles.p90,
-                quantiles.p99,
-                quantiles.largest
-            ),
-            (51.0, 91.0, 100.0, 100.0)
-        );
+        let values = (1..=100).rev().map(f64::from).collect();
+        let it = Quantiles::of(values).expect("there are values");
+        let all = [it.median, it.p90, it.p99, it.largest];
+        assert_eq!(all, [51.0, 91.0, 100.0, 100.0]);
         assert_eq!(Quantiles::of(Vec::new()), None);
     }
 }

@@ -48,10 +48,9 @@ impl SweepRow {
             Failure::Max => max.is_worse(),
             Failure::Uncut => uncut.is_worse(),
         };
-        if self.is_judged() {
-            Failure::ALL.into_iter().filter(is_fault).collect()
-        } else {
-            Vec::new()
+        match self.is_judged() {
+            true => Failure::ALL.into_iter().filter(is_fault).collect(),
+            false => Vec::new(),
         }
     }
 
@@ -64,11 +63,7 @@ impl SweepRow {
 
     /// Returns the severity: the largest of the excesses, at least 1 if the cut is lost.
     pub fn severity(&self) -> f64 {
-        let lost = if self.corrected.lost.is_some() {
-            1.0
-        } else {
-            0.0
-        };
+        let lost = self.corrected.lost.as_ref().map_or(0.0, |_| 1.0);
         self.changes()
             .iter()
             .map(ErrorChange::excess)

@@ -29,72 +29,79 @@ struct PaperCase {
     training: Training,
 }
 
-/// A departure from the printed paper.
-struct Departure {
-    printed: &'static str,
-    taken: &'static str,
-    reason: &'static str,
-    apply: fn(&mut PaperCase),
-}
+/// A departure from the printed paper: what is printed, what is taken, and why; and how it is undone.
+type Departure = ([&'static str; 3], fn(&mut PaperCase));
 
 /// All of them.
 const DEPARTURES: [Departure; 7] = [
-    Departure {
-        printed: "rho = 0.01",
-        taken: "rho = 0.001",
-        reason: "value of a prototype; the paper's value is faster",
-        apply: |case| case.settings.inversion.rho = 0.01,
-    },
-    Departure {
-        printed: "(9), (10): + rho F / |F|^4",
-        taken: "- 2 rho F / |F|^4",
-        reason: "the derivative of rho / |F|^2",
-        apply: |case| case.settings.inversion.time_term = TimeTerm::PrintedSign,
-    },
-    Departure {
-        printed: "(10): + rho Fy / (Fy^2 + Fy^2)^2",
-        taken: "- 2 rho F / |F|^4",
-        reason: "as above, and the denominator is |F|^4 in both axes",
-        apply: |case| case.settings.inversion.time_term = TimeTerm::Printed,
-    },
-    Departure {
-        printed: "f(x) = tanh(x) beside the factor 1/4",
-        taken: "f(x) = tanh(x/2)",
-        reason: "the factor 1/4 is that of tanh(x/2)",
-        apply: |case| {
+    (
+        [
+            "rho = 0.01",
+            "rho = 0.001",
+            "value of a prototype; the paper's value is faster",
+        ],
+        |case| case.settings.inversion.rho = 0.01,
+    ),
+    (
+        [
+            "(9), (10): + rho F / |F|^4",
+            "- 2 rho F / |F|^4",
+            "the derivative of rho / |F|^2",
+        ],
+        |case| case.settings.inversion.time_term = TimeTerm::PrintedSign,
+    ),
+    (
+        [
+            "(10): + rho Fy / (Fy^2 + Fy^2)^2",
+            "- 2 rho F / |F|^4",
+            "as above, and the denominator is |F|^4 in both axes",
+        ],
+        |case| case.settings.inversion.time_term = TimeTerm::Printed,
+    ),
+    (
+        [
+            "f(x) = tanh(x) beside the factor 1/4",
+            "f(x) = tanh(x/2)",
+            "the factor 1/4 is that of tanh(x/2)",
+        ],
+        |case| {
             case.training.step *= 4.0;
             case.training.initial_weight *= 2.0;
             case.settings.inversion.eta *= 0.25;
             case.settings.inversion.rho *= 4.0;
         },
-    },
-    Departure {
-        printed: "PD position loop",
-        taken: "P, Kd = 0",
-        reason: "Kd is not printed; here 0.05",
-        apply: |case| {
-            case.machine
-                .axes
-                .iter_mut()
-                .for_each(|axis| axis.kd = PD_GAIN);
+    ),
+    (
+        [
+            "PD position loop",
+            "P, Kd = 0",
+            "Kd is not printed; here 0.05",
+        ],
+        |case| {
+            let axes = case.machine.axes.iter_mut();
+            axes.for_each(|axis| axis.kd = PD_GAIN);
         },
-    },
-    Departure {
-        printed: "P'(k+1) = P'(k) + F T alone",
-        taken: "5 % of the offset along the path is taken back each period",
-        reason: "the offset drifts along the path",
-        apply: |case| case.settings.tangential_leak = 0.0,
-    },
-    Departure {
-        printed: "no limit of steps and rates, weights fixed",
-        taken: "steps of 5 mm/s, rates of 0.5 to 1.2, learning while cutting",
-        reason: "the term of rho grows as |F|^-3 near rest",
-        apply: |case| {
+    ),
+    (
+        [
+            "P'(k+1) = P'(k) + F T alone",
+            "5 % of the offset along the path is taken back each period",
+            "the offset drifts along the path",
+        ],
+        |case| case.settings.tangential_leak = 0.0,
+    ),
+    (
+        [
+            "no limit of steps and rates, weights fixed",
+            "steps of 5 mm/s, rates of 0.5 to 1.2, learning while cutting",
+            "the term of rho grows as |F|^-3 near rest",
+        ],
+        |case| {
             case.settings.inversion.step_limit = f64::INFINITY;
             case.settings.rate_range = [0.0, f64::INFINITY];
             case.settings.learning_step = 0.0;
         },
-    },
+    ),
 ];
 
 /// Result of a departure, over all seeds.
@@ -130,9 +137,9 @@ pub(crate) fn departures(
         excitation: Excitation::paper(),
         training: Training::default(),
     };
-    let row = |printed: &str, taken: &str, reason: &str, case: &PaperCase| {
-        let [printed, taken, reason] = [printed, taken, reason].map(str::to_owned);
-        let (uncorrected, worst, mean) = over_seeds(case, seeds, watch)?;
+    let row = |words: [&str; 3], case: &PaperCase| {
+        let [printed, taken, reason] = words.map(str::to_owned);
+        let [uncorrected, worst, mean] = over_seeds(case, seeds, watch)?;
         watch.advance(1);
         Ok::<_, RunError>(DepartureResult {
             printed,
@@ -143,26 +150,18 @@ pub(crate) fn departures(
             mean,
         })
     };
-    let mut rows = vec![row("", "everything as taken", "", &taken())?];
+    let mut rows = vec![row(["", "everything as taken", ""], &taken())?];
     let mut all = taken();
-    for Departure {
-        printed,
-        taken: instead,
-        reason,
-        apply,
-    } in &DEPARTURES
-    {
+    for (words, apply) in DEPARTURES {
         let mut case = taken();
         apply(&mut case);
         apply(&mut all);
-        rows.push(row(printed, instead, reason, &case)?);
+        rows.push(row(words, &case)?);
     }
-    rows.push(row("everything", "nothing", "", &all)?);
+    rows.push(row(["everything", "nothing", ""], &all)?);
     all.settings.inversion.time_term = TimeTerm::PrintedSign;
     rows.push(row(
-        "everything",
-        "the denominator of (10) as in (9)",
-        "",
+        ["everything", "the denominator of (10) as in (9)", ""],
         &all,
     )?);
     Ok(rows)
@@ -173,11 +172,9 @@ fn over_seeds(
     case: &PaperCase,
     seeds: &[u64],
     watch: &dyn Watch,
-) -> Result<(Numbers, Numbers, Numbers), RunError> {
-    let bench = Bench {
-        machine: &case.machine,
-        watch,
-    };
+) -> Result<[Numbers; 3], RunError> {
+    let machine = &case.machine;
+    let bench = Bench { machine, watch };
     let cut = |&seed: &u64| {
         let net = bench.train_on(&case.excitation, &case.training, seed).net;
         bench.cut_two_dimensional(&net, case.settings)
@@ -196,11 +193,8 @@ fn over_seeds(
             completed: cuts.iter().all(|cut| cut.completed),
         }
     };
-    Ok((
-        bench.cut_uncorrected()?,
-        over(f64::max, 1.0),
-        over(|a, b| a + b, 1.0 / cuts.len() as f64),
-    ))
+    let mean = over(|a, b| a + b, 1.0 / cuts.len() as f64);
+    Ok([bench.cut_uncorrected()?, over(f64::max, 1.0), mean])
 }
 
 /// A draw of the values that the paper leaves open, with its results.
@@ -257,10 +251,8 @@ fn drawn(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Draw, RunErr
         axis.disturbance_nm *= disturbance;
         axis.disturbance_hz = disturbance_hz;
     }
-    let bench = Bench {
-        machine: &machine,
-        watch,
-    };
+    let machine = &machine;
+    let bench = Bench { machine, watch };
     let excitation = Excitation {
         laps,
         feed_mm_s,
@@ -291,10 +283,8 @@ pub(crate) fn quantile(draws: &[Draw], of: fn(&Draw) -> f64, part: f64) -> f64 {
     let mut values: Vec<f64> = draws.iter().map(of).collect();
     values.sort_by(f64::total_cmp);
     let rank = (part * values.len() as f64).ceil() as usize;
-    values
-        .get(rank.clamp(1, values.len().max(1)) - 1)
-        .copied()
-        .unwrap_or(f64::NAN)
+    let place = rank.clamp(1, values.len().max(1)) - 1;
+    values.get(place).copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -44,13 +44,11 @@ pub(crate) fn figures(
     let same_time = bench.rho_for_time(&net, both.numbers.time_s)?;
     let magnitude = draw(&mut magnitude_only(&net, same_time), same_time)?;
     let magnitude_same_rho = draw(&mut magnitude_only(&net, rho), rho)?;
-    let time_only: Result<Vec<Drawn>, RunError> = RHO_OF_FIGURE_7
-        .iter()
-        .map(|&rho| {
-            let settings = with_gradient(with_rho(settings, rho), Gradient::Absent);
-            draw(&mut TwoDimensional::untried(net.clone(), settings), rho)
-        })
-        .collect();
+    let alone = |&rho: &f64| {
+        let settings = with_gradient(with_rho(settings, rho), Gradient::Absent);
+        draw(&mut TwoDimensional::untried(net.clone(), settings), rho)
+    };
+    let time_only: Result<Vec<Drawn>, RunError> = RHO_OF_FIGURE_7.iter().map(alone).collect();
     Ok(vec![
         figure_7(&magnitude, &time_only?),
         figure_8(&open, &magnitude, &magnitude_same_rho, &both),
@@ -62,19 +60,12 @@ pub(crate) fn figures(
 fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
     let mut curves = vec![error("magnitude only", magnitude, 0, LineStyle::Dashed)];
     for (i, drawn) in time_only.iter().enumerate() {
-        let rho = drawn.numbers.rho.unwrap_or_default();
-        let label = format!("ρ = {rho}");
+        let label = format!("ρ = {}", drawn.numbers.rho.unwrap_or_default());
         curves.push(error(&label, drawn, i + 1, LineStyle::Solid));
     }
-    let times: Vec<String> = time_only
-        .iter()
-        .map(|drawn| {
-            format!(
-                "{:.2} s and {:.1} µm",
-                drawn.numbers.time_s, drawn.numbers.max_um
-            )
-        })
-        .collect();
+    let of =
+        |Drawn { numbers: it, .. }: &Drawn| format!("{:.2} s and {:.1} µm", it.time_s, it.max_um);
+    let times: Vec<String> = time_only.iter().map(of).collect();
     captioned(
         "Figure 7",
         &format!(
@@ -83,45 +74,30 @@ fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
              eqs 9 and 10 a larger ρ would be slower.",
             times.join(", ")
         ),
-        vec![panel("", "Time [s]", "Contour error [µm]", curves)],
+        vec![error_panel("", curves)],
     )
 }
 
 fn figure_8(open: &Drawn, magnitude: &Drawn, same_rho: &Drawn, both: &Drawn) -> CaptionedFigure {
-    let curves = |magnitude: &Drawn, label: &str| {
+    let curves = |magnitude: &Drawn| {
         vec![
             error("uncorrected", open, 3, LineStyle::Dotted),
-            error(label, magnitude, 1, LineStyle::Dashed),
+            error("magnitude only", magnitude, 1, LineStyle::Dashed),
             error("two-dimensional", both, 2, LineStyle::Solid),
         ]
     };
-    let (at, time) = (
-        magnitude.numbers.rho.unwrap_or_default(),
-        magnitude.numbers.time_s,
-    );
+    let (of, than) = (both.numbers, magnitude.numbers);
+    let (at, time) = (than.rho.unwrap_or_default(), than.time_s);
     captioned(
         "Figure 8",
         &format!(
             "Contour error of both methods. (a) In the same machining time, {time:.3} s (magnitude only at rho = {at:.5}): \
              RMS {:.2} against {:.2} µm, max {:.1} against {:.1} µm. (b) At the same rho.",
-            both.numbers.rms_um,
-            magnitude.numbers.rms_um,
-            both.numbers.max_um,
-            magnitude.numbers.max_um
+            of.rms_um, than.rms_um, of.max_um, than.max_um
         ),
         vec![
-            panel(
-                "(a) same machining time",
-                "Time [s]",
-                "Contour error [µm]",
-                curves(magnitude, "magnitude only"),
-            ),
-            panel(
-                "(b) same rho",
-                "Time [s]",
-                "Contour error [µm]",
-                curves(same_rho, "magnitude only"),
-            ),
+            error_panel("(a) same machining time", curves(magnitude)),
+            error_panel("(b) same rho", curves(same_rho)),
         ],
     )
 }
@@ -130,80 +106,60 @@ fn figure_9(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
     let feed = |label: &str, drawn: &Drawn, color: usize, line: LineStyle| {
         curve(label, drawn.curves.feed.clone(), color, line)
     };
+    let curves = vec![
+        feed("uncorrected", open, 3, LineStyle::Dotted),
+        feed("magnitude only", magnitude, 1, LineStyle::Dashed),
+        feed("two-dimensional", both, 2, LineStyle::Solid),
+    ];
     captioned(
         "Figure 9",
         "Magnitude of the commanded feedrate. The magnitudes are much the same; what differs is the direction.",
-        vec![panel(
-            "",
-            "Time [s]",
-            "Feedrate [mm/s]",
-            vec![
-                feed("uncorrected", open, 3, LineStyle::Dotted),
-                feed("magnitude only", magnitude, 1, LineStyle::Dashed),
-                feed("two-dimensional", both, 2, LineStyle::Solid),
-            ],
-        )],
+        vec![panel("", "Time [s]", "Feedrate [mm/s]", curves)],
     )
 }
 
 fn figure_10(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
-    let programmed = || {
-        curve(
-            "programmed path",
-            open.curves.path.clone(),
-            0,
-            LineStyle::Thin,
-        )
+    let view = |title: &str, Drawn { curves: of, .. }: &Drawn| {
+        let path = open.curves.path.clone();
+        let curves = vec![
+            curve("programmed path", path, 0, LineStyle::Thin),
+            curve("command", enlarged(&of.command), 2, LineStyle::Solid),
+            curve("tool", enlarged(&of.tool), 1, LineStyle::Dashed),
+        ];
+        Panel {
+            equal_axes: true,
+            ..panel(title, "X [mm]", "Y [mm]", curves)
+        }
     };
-    let view = |title: &str, drawn: &Drawn| Panel {
-        equal_axes: true,
-        ..panel(
-            title,
-            "X [mm]",
-            "Y [mm]",
-            vec![
-                programmed(),
-                curve(
-                    "command",
-                    enlarged(&drawn.curves.command),
-                    2,
-                    LineStyle::Solid,
-                ),
-                curve("tool", enlarged(&drawn.curves.tool), 1, LineStyle::Dashed),
-            ],
-        )
-    };
-    CaptionedFigure {
-        figure: Figure {
-            panels: vec![
-                view("(a) magnitude only", magnitude),
-                view("(b) two-dimensional", both),
-            ],
-            columns: 2,
-            aspect: 1.0,
-        },
-        ..captioned(
-            "Figure 10",
-            &format!(
-                "Desired trajectories on the x-y plane (deviation {ENLARGEMENT} times enlarged): the command of the two-dimensional method leaves \
-                 the programmed path so that the tool does not."
-            ),
-            Vec::new(),
-        )
-    }
+    let views = vec![
+        view("(a) magnitude only", magnitude),
+        view("(b) two-dimensional", both),
+    ];
+    let mut captioned = captioned(
+        "Figure 10",
+        &format!(
+            "Desired trajectories on the x-y plane (deviation {ENLARGEMENT} times enlarged): the command of the two-dimensional method leaves \
+             the programmed path so that the tool does not."
+        ),
+        views,
+    );
+    (captioned.figure.columns, captioned.figure.aspect) = (2, 1.0);
+    captioned
 }
 
 /// Radial deviation from the circle, enlarged.
 fn enlarged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    points
-        .iter()
-        .map(|&[x, y]| {
-            let (dx, dy) = (x - RADIUS_MM, y);
-            let radius = libm::hypot(dx, dy);
-            let drawn = RADIUS_MM + ENLARGEMENT * (radius - RADIUS_MM);
-            [RADIUS_MM + dx / radius * drawn, dy / radius * drawn]
-        })
-        .collect()
+    let enlarge = |&[x, y]: &[f64; 2]| {
+        let (dx, dy) = (x - RADIUS_MM, y);
+        let radius = libm::hypot(dx, dy);
+        let drawn = RADIUS_MM + ENLARGEMENT * (radius - RADIUS_MM);
+        [RADIUS_MM + dx / radius * drawn, dy / radius * drawn]
+    };
+    points.iter().map(enlarge).collect()
+}
+
+fn error_panel(title: &str, curves: Vec<Polyline>) -> Panel {
+    panel(title, "Time [s]", "Contour error [µm]", curves)
 }
 
 fn error(label: &str, drawn: &Drawn, color: usize, line: LineStyle) -> Polyline {

@@ -69,8 +69,9 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
     let ahead = axis.delays.command_periods(period.servo_s) + late + mirrored.len();
     let mut mirror = with_zeros(&mirrored);
     mirror.reverse();
+    let of_reference = times(&denominator, &mirror);
     Filter::of_loop(
-        &times(&denominator, &mirror),
+        &of_reference,
         u32::try_from(ahead).ok()?,
         &with_zeros(&cancelled),
     )
@@ -116,22 +117,16 @@ impl ClosedAxis {
 
     /// One mechanics period.
     fn substep(&self, reference: DriveReference, axis: &mut AxisState, drive: &mut DriveState) {
-        let torque_nm = self
-            .drive
-            .torque_nm(&self.axis_model, reference, axis.speed_rad_s, drive);
-        self.axis_model.accelerate(
-            torque_nm - self.axis_model.friction_nm(axis.speed_rad_s, 0.0),
-            axis,
-        );
+        let (model, w) = (&self.axis_model, axis.speed_rad_s);
+        let torque_nm = self.drive.torque_nm(model, reference, w, drive);
+        model.accelerate(torque_nm - model.friction_nm(w, 0.0), axis);
     }
 
     /// Returns the response of each state over a servo period, as columns; a state that the drive
     /// does not have is zero.
     fn columns(&self) -> [[f64; STATES]; STATES] {
-        let (is_integral, is_filter) = (
-            self.parameters.speed_integral_s > 0.0,
-            self.parameters.torque_filter_hz > 0.0,
-        );
+        let is_integral = self.parameters.speed_integral_s > 0.0;
+        let is_filter = self.parameters.torque_filter_hz > 0.0;
         let is_there = [true, true, is_integral, is_filter];
         std::array::from_fn(|j| {
             if !is_there[j] {
@@ -148,12 +143,8 @@ impl ClosedAxis {
             for _ in 0..self.axis_model.periods.mechanics_per_servo {
                 self.substep(DriveReference::default(), &mut axis, &mut drive);
             }
-            [
-                axis.angle_rad,
-                axis.speed_rad_s,
-                drive.integral_nm(),
-                drive.filtered_nm(),
-            ]
+            let [integral_nm, filtered_nm] = [drive.integral_nm(), drive.filtered_nm()];
+            [axis.angle_rad, axis.speed_rad_s, integral_nm, filtered_nm]
         })
     }
 
@@ -169,16 +160,11 @@ impl ClosedAxis {
             if (n + ago).is_multiple_of(per_servo) {
                 positions_rad.push(axis.angle_rad);
             }
-            let acts = (drive_late..drive_late + per_servo).contains(&n);
-            self.substep(
-                if acts {
-                    reference
-                } else {
-                    DriveReference::default()
-                },
-                &mut axis,
-                &mut drive,
-            );
+            let acting = match (drive_late..drive_late + per_servo).contains(&n) {
+                true => reference,
+                false => DriveReference::default(),
+            };
+            self.substep(acting, &mut axis, &mut drive);
         }
         // The rest of the product is zero: D ends the response of the states.
         let mut product = times(characteristic, &positions_rad);
@@ -190,27 +176,23 @@ impl ClosedAxis {
     fn transfer(&self, nominal: &Parameters) -> (Vec<f64>, Vec<f64>) {
         let servo_s = self.axis_model.periods.servo_s;
         let characteristic = characteristic(&self.columns());
-        let speed = DriveReference {
-            speed_rad_s: 1.0,
-            torque_nm: 0.0,
-        };
-        let torque = DriveReference {
-            speed_rad_s: 0.0,
-            torque_nm: self.torque_for_change / servo_s,
+        let of = |speed_rad_s, torque_nm, ago: u32| {
+            let reference = DriveReference {
+                speed_rad_s,
+                torque_nm,
+            };
+            self.numerator(reference, &characteristic, ago)
         };
         let [_, measured_late] = self.late;
         let loop_gain = [nominal.kp_1_s + nominal.kd / servo_s, -nominal.kd / servo_s];
         let fed_1_s = self.parameters.velocity_feedforward / servo_s;
         let asked = [loop_gain[0] + fed_1_s, loop_gain[1] - fed_1_s];
-        let of_speed = times(&self.numerator(speed, &characteristic, 0), &asked);
+        let of_speed = times(&of(1.0, 0.0, 0), &asked);
         let of_torque = times(
-            &self.numerator(torque, &characteristic, 0),
+            &of(0.0, self.torque_for_change / servo_s, 0),
             &[1.0, -2.0, 1.0],
         );
-        let fed_back = times(
-            &self.numerator(speed, &characteristic, measured_late),
-            &loop_gain,
-        );
+        let fed_back = times(&of(1.0, 0.0, measured_late), &loop_gain);
         (sum(&of_speed, &of_torque), sum(&characteristic, &fed_back))
     }
 }
@@ -230,9 +212,8 @@ fn characteristic(columns: &[[f64; STATES]; STATES]) -> Vec<f64> {
 fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, x) in a.iter().enumerate() {
-        b.iter()
-            .zip(&mut product[i..])
-            .for_each(|(y, to)| *to += x * y);
+        let each = b.iter().zip(&mut product[i..]);
+        each.for_each(|(y, to)| *to += x * y);
     }
     product
 }
@@ -302,16 +283,15 @@ mod tests {
         let axis = known.axis(0);
         let linear = ClosedAxis::new(axis, &axis.nominal, &known.period);
         let (mut motor, mut drive) = (AxisState::default(), DriveState::AT_REST);
-        let (per_servo, [drive_late, measured_late]) =
-            (known.period.mechanics_per_servo as usize, linear.late);
+        let per_servo = known.period.mechanics_per_servo as usize;
+        let [drive_late, measured_late] = linear.late.map(|late| late as usize);
         let (mut course_rad, mut sent, mut positions_rad) = (Vec::new(), Vec::new(), Vec::new());
         for command_rad in commands_rad {
             positions_rad.push(motor.angle_rad);
             course_rad.push(motor.angle_rad);
             let before = course_rad.len() - 1;
-            let measured_rad = before
-                .checked_sub(measured_late as usize)
-                .map_or(0.0, |at| course_rad[at]);
+            let measured = before.checked_sub(measured_late);
+            let measured_rad = measured.map_or(0.0, |at| course_rad[at]);
             course_rad.pop();
             sent.push(linear.drive.position_loop(
                 &linear.axis_model,
@@ -321,10 +301,8 @@ mod tests {
                 &mut drive,
             ));
             for _ in 0..per_servo {
-                let acts = course_rad
-                    .len()
-                    .checked_sub(drive_late as usize)
-                    .map(|at| sent[at / per_servo]);
+                let acting = course_rad.len().checked_sub(drive_late);
+                let acts = acting.map(|at| sent[at / per_servo]);
                 course_rad.push(motor.angle_rad);
                 linear.substep(acts.unwrap_or_default(), &mut motor, &mut drive);
             }

@@ -34,6 +34,8 @@ use feedwright_control::{Command, Controller, Measured, Parameter, Schedule, Win
 
 use super::cross_coupled_feedrate;
 
+use super::deciding;
+
 /// Plan time of a line, s: at 50 mm/s on a circle of 10 mm the path is 0.8 um beside the middle of
 /// such a line, in 10 ms 3 um.
 pub(super) const LINE_S: f64 = 0.005;
@@ -69,10 +71,8 @@ pub(super) struct LaggingAxis {
 impl LaggingAxis {
     /// Following error and speed after `for_s` on a line at `v` mm/s.
     fn after(&self, [error_mm, speed_mm_s]: [f64; 2], v: f64, for_s: f64) -> [f64; 2] {
-        let (b, stiffness) = (
-            self.bandwidth_1_s,
-            self.bandwidth_1_s * self.reached * self.kp_1_s,
-        );
+        let b = self.bandwidth_1_s;
+        let stiffness = b * self.reached * self.kp_1_s;
         let steady_mm = (v / self.reached - self.fed_forward * v) / self.kp_1_s;
         let [e, w] = [error_mm - steady_mm, speed_mm_s - v];
         // The exponential of [[0, -1], [stiffness, -b]]: half its trace is -b / 2, and the rest
@@ -152,10 +152,7 @@ impl<const N: usize> ConstrainedFeedrate<N> {
 
 impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: self.settings.servo_periods.max(1),
-            preview: 0,
-        }
+        deciding(self.settings.servo_periods.max(1), 0)
     }
 
     /// Forgets the path.
@@ -167,12 +164,12 @@ impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     /// Plans the path that was recorded.
     fn next_lap(&mut self) {
         if self.rates.is_empty() {
-            self.rates = DividedPath {
+            let path = DividedPath {
                 ends_mm: &self.ends_mm,
                 axes: &self.axes,
                 period_s: self.period_s,
-            }
-            .plan(&self.settings);
+            };
+            self.rates = path.plan(&self.settings);
         }
     }
 
@@ -212,23 +209,19 @@ impl<const N: usize> DividedPath<'_, N> {
     fn cut(&self, line: usize, state: &ServoStates<N>, log_rate: f64) -> (ServoStates<N>, f64) {
         let for_s = self.period_s * libm::exp(-log_rate);
         let v = scale(1.0 / for_s, self.chord_mm(line));
-        let state: ServoStates<N> =
-            std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
+        let after = |i: usize| self.axes[i].after(state[i], v[i], for_s);
+        let state: ServoStates<N> = std::array::from_fn(after);
         let tool_mm = sub(self.ends_mm[line + 1], state.map(|[error_mm, _]| error_mm));
         let near = line.saturating_sub(MEMORY)..(line + 2).min(self.count());
-        let nearest_mm = near
-            .map(|near| self.distance_mm(near, tool_mm))
-            .fold(f64::INFINITY, f64::min);
+        let near_mm = near.map(|near| self.distance_mm(near, tool_mm));
+        let nearest_mm = near_mm.fold(f64::INFINITY, f64::min);
         (state, libm::log(nearest_mm.max(LEAST_MM)))
     }
 
     fn distance_mm(&self, line: usize, tool_mm: [f64; N]) -> f64 {
         let (chord_mm, from_mm) = (self.chord_mm(line), sub(tool_mm, self.ends_mm[line]));
-        let part = bounded(
-            dot(from_mm, chord_mm) / dot(chord_mm, chord_mm).max(f64::MIN_POSITIVE),
-            0.0,
-            1.0,
-        );
+        let square_mm2 = dot(chord_mm, chord_mm).max(f64::MIN_POSITIVE);
+        let part = bounded(dot(from_mm, chord_mm) / square_mm2, 0.0, 1.0);
         norm(add_scaled(from_mm, -part, chord_mm))
     }
 
@@ -249,23 +242,16 @@ impl<const N: usize> DividedPath<'_, N> {
         let mut log_rates = vec![0.0; self.count()];
         for _ in 0..STEPS {
             let (states, errors) = self.cut_all(&log_rates);
-            let over: Vec<f64> = errors
-                .iter()
-                .map(|error| error - libm::log(settings.allowed_mm))
-                .collect();
-            let step = self.quadratic_step(
-                &log_rates,
-                &self.slopes(&log_rates, &states, &errors),
-                &over,
-                least,
-            );
+            let allowed = libm::log(settings.allowed_mm);
+            let over: Vec<f64> = errors.iter().map(|error| error - allowed).collect();
+            let slopes = self.slopes(&log_rates, &states, &errors);
+            let step = self.quadratic_step(&log_rates, &slopes, &over, least);
             let largest = step
                 .iter()
                 .fold(0.0_f64, |largest, step| largest.max(step.abs()));
-            log_rates
-                .iter_mut()
-                .zip(&step)
-                .for_each(|(log_rate, step)| *log_rate += step);
+            for (log_rate, step) in log_rates.iter_mut().zip(&step) {
+                *log_rate += step;
+            }
             if largest < DIFFERENCE {
                 break;
             }
@@ -308,37 +294,25 @@ impl<const N: usize> DividedPath<'_, N> {
     ) -> Vec<f64> {
         let bounds = |line: usize| {
             let log_rate: f64 = log_rates[line];
-            [
-                (least - log_rate).max(-LONGEST_STEP),
-                (-log_rate).min(LONGEST_STEP),
-            ]
+            let low = (least - log_rate).max(-LONGEST_STEP);
+            [low, (-log_rate).min(LONGEST_STEP)]
         };
-        let moving: Vec<bool> = (0..log_rates.len())
-            .map(|line| self.is_moving(line))
-            .collect();
-        let weight: Vec<f64> = log_rates
-            .iter()
-            .map(|log_rate| libm::exp(-log_rate))
-            .collect();
+        let count = log_rates.len();
+        let moving: Vec<bool> = (0..count).map(|line| self.is_moving(line)).collect();
+        let weight: Vec<f64> = log_rates.iter().map(|rate| libm::exp(-rate)).collect();
         // What all multipliers take from the step of each line, before its bounds.
-        let (mut pressed, mut multipliers) =
-            (vec![0.0; log_rates.len()], vec![0.0_f64; over.len()]);
+        let (mut pressed, mut multipliers) = (vec![0.0; count], vec![0.0_f64; over.len()]);
         let step = |line: usize, pressed: f64| {
             let [low, high] = bounds(line);
-            if moving[line] {
-                bounded(1.0 - pressed / weight[line], low, high)
-            } else {
-                0.0
-            }
+            let step = bounded(1.0 - pressed / weight[line], low, high);
+            if moving[line] { step } else { 0.0 }
         };
         for _ in 0..PASSES {
             for (line, slopes) in slopes.iter().enumerate() {
                 let reach = (line + 1).min(MEMORY);
                 let lines = || (0..reach).map(|back| (line - back, slopes[back]));
-                let left = over[line]
-                    + lines()
-                        .map(|(at, slope)| slope * step(at, pressed[at]))
-                        .sum::<f64>();
+                let stepped = lines().map(|(at, slope)| slope * step(at, pressed[at]));
+                let left = over[line] + stepped.sum::<f64>();
                 let curvature: f64 = lines().map(|(at, slope)| slope * slope / weight[at]).sum();
                 let change = (left / curvature.max(f64::MIN_POSITIVE)).max(-multipliers[line]);
                 if change != 0.0 && change.is_finite() {
@@ -347,16 +321,13 @@ impl<const N: usize> DividedPath<'_, N> {
                 }
             }
         }
-        (0..log_rates.len())
-            .map(|line| step(line, pressed[line]))
-            .collect()
+        (0..count).map(|line| step(line, pressed[line])).collect()
     }
 
     /// Slows lines down until the feedrate changes no faster than the machine may.
     fn hold_acceleration(&self, rates: &mut [f64], acceleration_mm_s2: f64) {
-        let planned: Vec<f64> = (0..self.count())
-            .map(|line| norm(self.chord_mm(line)) / self.period_s)
-            .collect();
+        let planned = |line| norm(self.chord_mm(line)) / self.period_s;
+        let planned: Vec<f64> = (0..self.count()).map(planned).collect();
         let hold = |rates: &mut [f64], line: usize, neighbor: usize| {
             if planned[line] > 0.0 {
                 let beside = rates[neighbor] * planned[neighbor];
@@ -416,16 +387,14 @@ mod tests {
             let (mut e, mut w) = (0.3, -20.0);
             let steps = 200_000;
             for _ in 0..steps {
-                let of_w =
-                    bandwidth_1_s * (axis.reached * (axis.kp_1_s * e + fed_forward * 40.0) - w);
+                let asked = axis.reached * (axis.kp_1_s * e + fed_forward * 40.0);
+                let of_w = bandwidth_1_s * (asked - w);
                 e += 0.02 / f64::from(steps) * (40.0 - w);
                 w += 0.02 / f64::from(steps) * of_w;
             }
             // Euler's steps of 0.1 us are off by some 1e-5 of what decays.
-            assert!(
-                (found[0] - e).abs() < 1e-4 && (found[1] - w).abs() < 1e-2,
-                "{axis:?}: {found:?} {e} {w}"
-            );
+            let is_there = (found[0] - e).abs() < 1e-4 && (found[1] - w).abs() < 1e-2;
+            assert!(is_there, "{axis:?}: {found:?} {e} {w}");
         }
     }
 
@@ -443,22 +412,15 @@ mod tests {
             ..Settings::DEFAULT
         };
         let rates: Vec<f64> = lines.plan(&settings);
-        let errors = |rates: &[f64]| {
-            lines
-                .cut_all(
-                    &rates
-                        .iter()
-                        .map(|rate| libm::log(*rate))
-                        .collect::<Vec<_>>(),
-                )
-                .1
+        let worst = |rates: &[f64]| {
+            let log_rates: Vec<f64> = rates.iter().map(|rate| libm::log(*rate)).collect();
+            let (_, errors) = lines.cut_all(&log_rates);
+            errors.into_iter().fold(f64::NEG_INFINITY, f64::max)
         };
         let limit = libm::log(settings.allowed_mm);
-        let worst = errors(&rates).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        assert!(worst < limit + 0.01, "{}", libm::exp(worst));
-        let open = errors(&vec![1.0; rates.len()])
-            .into_iter()
-            .fold(f64::NEG_INFINITY, f64::max);
+        let held = worst(&rates);
+        assert!(held < limit + 0.01, "{}", libm::exp(held));
+        let open = worst(&vec![1.0; rates.len()]);
         assert!(
             open > limit + 0.5,
             "there is nothing to hold: {}",
@@ -469,10 +431,7 @@ mod tests {
             if rates[line] < 0.99 {
                 let mut faster = rates.clone();
                 faster[line] = (1.2 * rates[line]).min(1.0);
-                let worst = errors(&faster)
-                    .into_iter()
-                    .fold(f64::NEG_INFINITY, f64::max);
-                assert!(worst > limit, "line {line} at {}", rates[line]);
+                assert!(worst(&faster) > limit, "line {line} at {}", rates[line]);
             }
         }
     }
@@ -492,10 +451,8 @@ mod tests {
         for pair in rates.windows(2) {
             let [before, after] = [pair[0] * 50.0, pair[1] * 50.0];
             // 100 mm/s2 over a line of 0.25 mm; lines differ by 1 %.
-            assert!(
-                (after * after - before * before).abs() < 2.0 * 100.0 * 0.25 * 1.05,
-                "{before} {after}"
-            );
+            let change = (after * after - before * before).abs();
+            assert!(change < 2.0 * 100.0 * 0.25 * 1.05, "{before} {after}");
         }
     }
 }

@@ -23,6 +23,8 @@ use feedwright_control::{Window, carried};
 
 use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
+use super::deciding;
+
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Settings {
@@ -77,10 +79,7 @@ impl<const N: usize> ContourCompensation<N> {
 
 impl<const N: usize> Controller<N> for ContourCompensation<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: 1,
-            preview: 0,
-        }
+        deciding(1, 0)
     }
 
     fn reset(&mut self) {
@@ -102,14 +101,8 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
         self.tangent = Some(tangent);
         let part = period_s / (period_s + self.settings.filter_s);
         self.filtered_mm = add_scaled(self.filtered_mm, part, sub(error_mm, self.filtered_mm));
-        Command::straight(
-            1.0,
-            add_scaled(
-                offset_mm,
-                self.settings.rate_1_s * period_s,
-                self.filtered_mm,
-            ),
-        )
+        let rate = self.settings.rate_1_s * period_s;
+        Command::straight(1.0, add_scaled(offset_mm, rate, self.filtered_mm))
     }
 }
 
@@ -136,10 +129,8 @@ pub(super) mod tests {
 
     /// Error of the radius after 2 s, mm.
     fn droop_mm(mut controller: impl Controller<2>) -> f64 {
-        norm(sub(
-            cut(&mut Circle, &mut controller, [0.0; 2], 2000),
-            [10.0, 0.0],
-        )) - 10.0
+        let tool_mm = cut(&mut Circle, &mut controller, [0.0; 2], 2000);
+        norm(sub(tool_mm, [10.0, 0.0])) - 10.0
     }
 
     #[test]
@@ -147,10 +138,8 @@ pub(super) mod tests {
         // Radius of a first-order lag with the time constant T at the angular speed w: R / sqrt(1 +
         // (w T)^2).
         let open = droop_mm(Uncorrected);
-        assert!(
-            (open - (10.0 / libm::sqrt(1.01) - 10.0)).abs() < 1e-3,
-            "{open}"
-        );
+        let expected = 10.0 / libm::sqrt(1.01) - 10.0;
+        assert!((open - expected).abs() < 1e-3, "{open}");
         let compensated = droop_mm(ContourCompensation::new(Settings::DEFAULT));
         assert!(compensated.abs() < 2e-4, "{compensated}");
     }

@@ -123,14 +123,10 @@ mod tests {
     impl KnotSource<2> for Corner {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let [x, y] = [tau_s.min(CORNER_S), (tau_s - CORNER_S).max(0.0)].map(|t_s| 50.0 * t_s);
-            let tangent = if tau_s < CORNER_S {
-                [1.0, 0.0]
-            } else {
-                [0.0, 1.0]
-            };
+            let is_before = tau_s < CORNER_S;
             Knot {
                 position_mm: [x, y],
-                tangent,
+                tangent: [is_before, !is_before].map(|is| f64::from(u8::from(is))),
                 feed_mm_s: 50.0,
                 cutting: true,
             }
@@ -142,11 +138,8 @@ mod tests {
             friction: 0.0,
             ..Gains::EXACT
         };
-        CornerContour::new(
-            Feedforward::new([inverse(axis(0.0, 0.0)); 2], [gains; 2]),
-            REACH_S,
-            SERVO_S,
-        )
+        let inverse = Feedforward::new([inverse(axis(0.0, 0.0)); 2], [gains; 2]);
+        CornerContour::new(inverse, REACH_S, SERVO_S)
     }
 
     #[test]
@@ -167,10 +160,8 @@ mod tests {
     #[test]
     fn a_curve_without_a_corner_gets_none() {
         commands(&mut Circle, &mut contour(), SERVO_S, |n, command_mm| {
-            assert!(
-                norm(sub(command_mm, Circle.knot(n as f64 * SERVO_S).position_mm)) < 1e-12,
-                "{n}"
-            );
+            let path_mm = Circle.knot(n as f64 * SERVO_S).position_mm;
+            assert!(norm(sub(command_mm, path_mm)) < 1e-12, "{n}");
         });
     }
 }

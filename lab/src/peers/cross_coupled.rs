@@ -31,6 +31,8 @@ use feedwright_control::{Window, carried};
 
 use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
+use super::deciding;
+
 /// Time constant of the filter of the derivative, s: two servo periods of 1 ms, below what a speed
 /// loop follows.
 const DERIVATIVE_S: f64 = 0.002;
@@ -126,10 +128,7 @@ impl<const N: usize> CrossCoupled<N> {
 
 impl<const N: usize> Controller<N> for CrossCoupled<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: 1,
-            preview: 0,
-        }
+        deciding(1, 0)
     }
 
     fn reset(&mut self) {
@@ -148,13 +147,10 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
             let before_mm = carried(last.error_mm, last.tangent, tangent);
             self.integral_mm_s = carried(self.integral_mm_s, last.tangent, tangent);
             self.derivative_mm_s = carried(self.derivative_mm_s, last.tangent, tangent);
-            let missing_mm_s =
-                add_scaled(sub(error_mm, before_mm), -period_s, self.derivative_mm_s);
-            self.derivative_mm_s = add_scaled(
-                self.derivative_mm_s,
-                1.0 / (period_s + DERIVATIVE_S),
-                missing_mm_s,
-            );
+            let change_mm = sub(error_mm, before_mm);
+            let missing_mm_s = add_scaled(change_mm, -period_s, self.derivative_mm_s);
+            let part_1_s = 1.0 / (period_s + DERIVATIVE_S);
+            self.derivative_mm_s = add_scaled(self.derivative_mm_s, part_1_s, missing_mm_s);
             held_back = norm(sub(window.offset_mm, last.asked_mm)) > HELD_BACK_MM;
         }
         let grows = dot(error_mm, self.integral_mm_s) > 0.0;
@@ -163,11 +159,8 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
         }
         let Settings { kp, ki_1_s, kd_s } = self.settings;
         let slow_mm = add_scaled([0.0; N], ki_1_s, self.integral_mm_s);
-        let offset_mm = add_scaled(
-            add_scaled(slow_mm, kp, error_mm),
-            kd_s,
-            self.derivative_mm_s,
-        );
+        let offset_mm = add_scaled(slow_mm, kp, error_mm);
+        let offset_mm = add_scaled(offset_mm, kd_s, self.derivative_mm_s);
         self.last = Some(LastError {
             error_mm,
             tangent,
@@ -206,16 +199,12 @@ pub(super) mod tests {
                 offset_mm,
                 offset_mm_s: [0.0; 2],
             };
-            let contour = estimator.estimate(&window, tool_mm);
             let measured = Measured {
                 position_mm: tool_mm,
-                contour,
+                contour: estimator.estimate(&window, tool_mm),
             };
-            let pulled_to_mm = add_scaled(
-                add_scaled(window.now().position_mm, 1.0, offset_mm),
-                1.0,
-                load_mm,
-            );
+            let command_mm = add_scaled(window.now().position_mm, 1.0, offset_mm);
+            let pulled_to_mm = add_scaled(command_mm, 1.0, load_mm);
             offset_mm = controller.command(&window, &measured).offset_mm;
             tool_mm = add_scaled(tool_mm, 1.0 - libm::exp(-0.05), sub(pulled_to_mm, tool_mm));
         }
@@ -239,12 +228,8 @@ pub(super) mod tests {
     #[test]
     fn the_proportional_part_leaves_its_share_and_the_integral_nothing() {
         let rests_at_mm = |settings: Settings| {
-            cut(
-                &mut Line,
-                &mut CrossCoupled::new(settings),
-                [0.0, 0.02],
-                1000,
-            )[1]
+            let controller = &mut CrossCoupled::new(settings);
+            cut(&mut Line, controller, [0.0, 0.02], 1000)[1]
         };
         let proportional = rests_at_mm(Settings {
             kp: 3.0,

@@ -105,24 +105,15 @@ impl<const N: usize> Controller<N> for CrossCoupledFeedrate<N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        let Settings {
-            allowed_mm,
-            filter_s,
-            slowest,
-            acceleration_mm_s2,
-        } = self.settings;
+        let of = self.settings;
         let error_mm = norm(measured.contour.vector_mm);
         if error_mm.is_finite() {
             let period_s = window.feed_period_s;
             let missing_mm = error_mm / self.rate - self.at_full_feed_mm;
-            self.at_full_feed_mm += period_s / (period_s + filter_s) * missing_mm;
-            let wanted = allowed_mm / self.at_full_feed_mm.max(f64::MIN_POSITIVE);
-            self.rate = eased(
-                self.rate,
-                bounded(wanted, slowest, 1.0),
-                acceleration_mm_s2,
-                window,
-            );
+            self.at_full_feed_mm += period_s / (period_s + of.filter_s) * missing_mm;
+            let wanted = of.allowed_mm / self.at_full_feed_mm.max(f64::MIN_POSITIVE);
+            let wanted = bounded(wanted, of.slowest, 1.0);
+            self.rate = eased(self.rate, wanted, of.acceleration_mm_s2, window);
         }
         Command {
             rate: self.rate,
@@ -170,15 +161,11 @@ mod tests {
                 vector_mm: [0.0, at_full_feed_mm * rate * rate],
                 ..ContourError::NONE
             };
-            rate = controller
-                .command(
-                    &window,
-                    &Measured {
-                        position_mm: [0.0; 2],
-                        contour,
-                    },
-                )
-                .rate;
+            let measured = Measured {
+                position_mm: [0.0; 2],
+                contour,
+            };
+            rate = controller.command(&window, &measured).rate;
             rate
         })
     }
@@ -198,7 +185,8 @@ mod tests {
     #[test]
     fn the_feed_changes_no_faster_than_the_machine_may() {
         // 100 mm/s2 over 1 ms of 50 mm/s.
-        let steps = rates(SETTINGS, 1.0)
+        let rates = rates(SETTINGS, 1.0);
+        let steps = rates
             .windows(2)
             .map(|pair| pair[0] - pair[1])
             .fold(0.0, f64::max);

@@ -32,13 +32,7 @@ pub(super) const BANDWIDTH: Parameter = Parameter::number(
 
 /// Gains of the observer of an axis, for a bandwidth and a servo period of `servo_s`.
 pub(super) fn gains(axis: &SampledAxis, bandwidth_hz: f64, servo_s: f64) -> [f64; 3] {
-    let SampledAxis {
-        alpha,
-        beta,
-        gamma_s,
-        delta_s,
-        ..
-    } = *axis;
+    let [alpha, beta, gamma_s, delta_s] = axis.coefficients();
     let r = 1.0 - libm::exp(-core::f64::consts::TAU * bandwidth_hz * servo_s);
     let a = 1.0 - alpha;
     let l1 = 3.0 * r - a;
@@ -68,24 +62,13 @@ mod tests {
         let [l1, l2, l3] = gains(&model, 30.0, SERVO_S);
         let p = libm::exp(-core::f64::consts::TAU * 30.0 * SERVO_S);
         for z in [p, 0.0, 1.0, 1.7] {
-            let SampledAxis {
-                alpha,
-                beta,
-                gamma_s,
-                delta_s,
-                ..
-            } = model;
-            let [m0, m1, m2] = [
-                [z - 1.0 + l1, -gamma_s, -delta_s],
-                [l2, z - alpha, -beta],
-                [l3, 0.0, z - 1.0],
-            ];
+            let [alpha, beta, gamma_s, delta_s] = model.coefficients();
+            let m0 = [z - 1.0 + l1, -gamma_s, -delta_s];
+            let [m1, m2] = [[l2, z - alpha, -beta], [l3, 0.0, z - 1.0]];
             let minor = |i: usize, j: usize| m1[i] * m2[j] - m1[j] * m2[i];
             let determinant = m0[0] * minor(1, 2) - m0[1] * minor(0, 2) + m0[2] * minor(0, 1);
-            assert!(
-                (determinant - (z - p) * (z - p) * (z - p)).abs() < 1e-12,
-                "{z}: {determinant}"
-            );
+            let expected = (z - p) * (z - p) * (z - p);
+            assert!((determinant - expected).abs() < 1e-12, "{z}: {determinant}");
         }
     }
 }

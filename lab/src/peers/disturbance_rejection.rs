@@ -134,30 +134,20 @@ impl AxisObserver {
     /// Goes on by a servo period that begins with sending this command and with this position,
     /// against this friction.
     fn go_on(&mut self, command_mm: f64, friction_mm_s: f64, measured_mm: f64) {
-        let SampledAxis {
-            alpha,
-            beta,
-            gamma_s,
-            delta_s,
-            ..
-        } = self.of.axis;
+        let [alpha, beta, gamma_s, delta_s] = self.of.axis.coefficients();
         if self.last_mm.is_none() {
             self.commands = CommandQueue::resting(self.of.drive.command_periods, command_mm);
         }
         let command_mm = self.commands.pass(command_mm);
         self.send(command_mm, measured_mm);
-        let SentReference {
-            speed_mm_s: asked_mm_s,
-            torque_mm_s,
-        } = self.arrived();
-        let beside_mm_s = torque_mm_s + self.integrated(asked_mm_s, measured_mm);
+        let arrived = self.arrived();
+        let asked_mm_s = arrived.speed_mm_s;
+        let beside_mm_s = arrived.torque_mm_s + self.integrated(asked_mm_s, measured_mm);
         self.last_mm = Some([command_mm, measured_mm]);
         let innovation_mm = measured_mm - self.position_mm;
         let [l1, l2, l3] = self.of.gains;
-        let (w, driven_mm_s) = (
-            self.speed_mm_s,
-            asked_mm_s + beside_mm_s - friction_mm_s + self.disturbance_mm_s,
-        );
+        let w = self.speed_mm_s;
+        let driven_mm_s = asked_mm_s + beside_mm_s - friction_mm_s + self.disturbance_mm_s;
         self.position_mm += gamma_s * w + delta_s * driven_mm_s + l1 * innovation_mm;
         self.speed_mm_s = alpha * w + beta * driven_mm_s + l2 * innovation_mm;
         let disturbance_mm_s = self.disturbance_mm_s + l3 * innovation_mm;
@@ -190,10 +180,8 @@ impl AxisObserver {
         let whole = libm::floor(periods);
         // A float that is not a number saturates to zero here.
         let at = |age: usize| {
-            self.sent
-                .get(age.min(KEPT_PERIODS - 1))
-                .copied()
-                .unwrap_or_default()
+            let sent = self.sent.get(age.min(KEPT_PERIODS - 1));
+            sent.copied().unwrap_or_default()
         };
         let (newer, part) = (at(whole as usize), periods - whole);
         if part > 0.0 {
@@ -243,19 +231,22 @@ impl<const N: usize> DisturbanceRejection<N> {
 
     /// The command of the next servo period on a path that runs at `rate` times the planned feed.
     pub(super) fn command_at(&mut self, window: &Window<'_, N>, rate: f64) -> Command<N> {
-        let load_mm_s = self
-            .observers
-            .each_ref()
-            .map(|observer| -observer.disturbance_mm_s);
         let at_mm = |after_s: f64| {
             window
                 .at(rate * (window.feed_period_s + after_s))
                 .position_mm
         };
-        Command::straight(
-            rate,
-            self.feedforward.lead_mm(at_mm, window.offset_mm, load_mm_s),
-        )
+        let lead_mm = self
+            .feedforward
+            .lead_mm(at_mm, window.offset_mm, self.load_mm_s());
+        Command::straight(rate, lead_mm)
+    }
+
+    /// Loads that take out the estimated disturbances, mm/s.
+    fn load_mm_s(&self) -> [f64; N] {
+        self.observers
+            .each_ref()
+            .map(|observer| -observer.disturbance_mm_s)
     }
 }
 
@@ -275,10 +266,8 @@ impl<const N: usize> Controller<N> for DisturbanceRejection<N> {
     /// Advances each observer by one servo period. Without a measured position it resets them and
     /// the feedforward, because the motion of the tool in between is unknown.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
-        let position_mm = measured
-            .map(|measured| measured.position_mm)
-            .filter(|mm| norm(*mm).is_finite());
-        let Some(position_mm) = position_mm else {
+        let position_mm = measured.map(|measured| measured.position_mm);
+        let Some(position_mm) = position_mm.filter(|mm| norm(*mm).is_finite()) else {
             self.reset();
             return;
         };
@@ -294,12 +283,7 @@ impl<const N: usize> Controller<N> for DisturbanceRejection<N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
-        self.feedforward.command_against(
-            window,
-            self.observers
-                .each_ref()
-                .map(|observer| -observer.disturbance_mm_s),
-        )
+        self.feedforward.command_against(window, self.load_mm_s())
     }
 }
 
@@ -309,19 +293,7 @@ pub(super) mod tests {
 
     const SERVO_S: f64 = 0.001;
 
-    /// A speed loop of 200 rad/s, held exactly.
-    pub(in super::super) fn axis(kd: f64) -> SampledAxis {
-        let alpha = libm::exp(-200.0 * SERVO_S);
-        let gamma_s = (1.0 - alpha) / 200.0;
-        SampledAxis {
-            alpha,
-            beta: 1.0 - alpha,
-            gamma_s,
-            delta_s: SERVO_S - gamma_s,
-            kp_1_s: 50.0,
-            kd,
-        }
-    }
+    pub(in super::super) use crate::peers::fixture::sampled as axis;
 
     /// Position and estimate after a second at rest at 0 under a disturbance of 3 mm/s and a
     /// friction of 1 mm/s that is known, with and without taking the estimate out.
@@ -340,11 +312,8 @@ pub(super) mod tests {
             let carried = derivative / (model.kp_1_s + derivative) * offset_mm;
             let fed_forward = 1.0 / (model.kp_1_s + derivative);
             let taken_out = -observer.disturbance_mm_s / (model.kp_1_s + derivative);
-            offset_mm = if take_out {
-                taken_out + carried + fed_forward
-            } else {
-                0.0
-            };
+            let out_mm = taken_out + carried + fed_forward;
+            offset_mm = if take_out { out_mm } else { 0.0 };
         }
         (x, observer.disturbance_mm_s)
     }
@@ -361,34 +330,25 @@ pub(super) mod tests {
                 limit_mm_s: 100.0,
                 gains: gains(&axis),
             };
-            let (error_mm, found_mm_s) = after_a_second(of, true);
-            assert!(
-                error_mm.abs() < 1e-9 && (found_mm_s - 3.0).abs() < 1e-7,
-                "kd {kd}: {error_mm} {found_mm_s}"
-            );
-            let (error_mm, found_mm_s) = after_a_second(of, false);
-            assert!(
-                (error_mm - 2.0 / 50.0).abs() < 1e-9 && (found_mm_s - 3.0).abs() < 1e-7,
-                "kd {kd}: {error_mm}"
-            );
+            for (take_out, left_mm) in [(true, 0.0), (false, 2.0 / 50.0)] {
+                let (error_mm, found_mm_s) = after_a_second(of, take_out);
+                let is_found = (found_mm_s - 3.0).abs() < 1e-7;
+                let is_left = (error_mm - left_mm).abs() < 1e-9;
+                assert!(is_found && is_left, "kd {kd}: {error_mm} {found_mm_s}");
+            }
         }
     }
 
     #[test]
     fn no_more_is_believed_than_the_drive_can() {
-        let drive = ObservedDrive::default();
         let of = ObservedAxis {
             axis: axis(0.0),
-            drive,
+            drive: ObservedDrive::default(),
             limit_mm_s: 5.0,
             gains: [0.5, 50.0, 10.0],
         };
         let mut observer = AxisObserver::new(of, SERVO_S);
         (0..100).for_each(|_| observer.go_on(0.0, 0.0, 100.0));
-        assert!(
-            observer.disturbance_mm_s.abs() == 5.0,
-            "{}",
-            observer.disturbance_mm_s
-        );
+        assert_eq!(observer.disturbance_mm_s.abs(), 5.0);
     }
 }

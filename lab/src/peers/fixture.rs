@@ -6,6 +6,8 @@ use feedwright_control::{
     Preview, Register, Window,
 };
 
+use super::zero_phase::SampledAxis;
+
 const SERVO_S: f64 = 0.001;
 
 /// The commands of a controller that decides in each servo period, does not measure, and is not
@@ -53,6 +55,20 @@ pub(super) fn axis(kd: f64, coulomb_friction_nm: f64) -> Parameters {
         viscous_friction_nm_s: 0.03,
         coulomb_friction_nm,
         coulomb_smoothing_rad_s: 0.05,
+    }
+}
+
+/// A first-order speed loop of 200 rad/s, held exactly.
+pub(super) fn sampled(kd: f64) -> SampledAxis {
+    let alpha = libm::exp(-200.0 * SERVO_S);
+    let gamma_s = (1.0 - alpha) / 200.0;
+    SampledAxis {
+        alpha,
+        beta: 1.0 - alpha,
+        gamma_s,
+        delta_s: SERVO_S - gamma_s,
+        kp_1_s: 50.0,
+        kd,
     }
 }
 

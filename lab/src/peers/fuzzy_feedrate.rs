@@ -26,6 +26,8 @@ use feedwright_control::vector::{bounded, norm};
 
 use feedwright_control::{Command, Controller, Measured, Parameter, Schedule};
 
+use super::deciding;
+
 /// Period in which the rules are evaluated, s: the period of an interpolator, not of a servo.
 pub(super) const FEED_PERIOD_S: f64 = 0.01;
 /// The consequents: error small, medium, large; within it falling, steady, rising.
@@ -131,10 +133,7 @@ impl FuzzyFeedrate {
 
 impl<const N: usize> Controller<N> for FuzzyFeedrate {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: self.settings.servo_periods,
-            preview: 0,
-        }
+        deciding(self.settings.servo_periods, 0)
     }
 
     fn reset(&mut self) {
@@ -144,9 +143,8 @@ impl<const N: usize> Controller<N> for FuzzyFeedrate {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let error_mm = norm(measured.contour.vector_mm);
         if error_mm.is_finite() {
-            let change_mm_s = self
-                .error_mm
-                .map_or(0.0, |last_mm| (error_mm - last_mm) / window.feed_period_s);
+            let change = |last_mm| (error_mm - last_mm) / window.feed_period_s;
+            let change_mm_s = self.error_mm.map_or(0.0, change);
             let wanted = self.settings.rate(error_mm, change_mm_s);
             self.rate = eased(self.rate, wanted, self.settings.acceleration_mm_s2, window);
             self.error_mm = Some(error_mm);
@@ -165,14 +163,10 @@ mod tests {
     fn every_rule_is_met_where_it_alone_holds() {
         for (i, row) in RULES.iter().enumerate() {
             for (j, slow_down) in row.iter().enumerate() {
-                let rate = SETTINGS.rate(
-                    0.5 * i as f64 * SETTINGS.error_mm,
-                    (j as f64 - 1.0) * SETTINGS.change_mm_s,
-                );
-                assert!(
-                    (rate - (1.0 - (1.0 - SETTINGS.slowest) * slow_down)).abs() < 1e-12,
-                    "{i} {j}: {rate}"
-                );
+                let error_mm = 0.5 * i as f64 * SETTINGS.error_mm;
+                let rate = SETTINGS.rate(error_mm, (j as f64 - 1.0) * SETTINGS.change_mm_s);
+                let expected = 1.0 - (1.0 - SETTINGS.slowest) * slow_down;
+                assert!((rate - expected).abs() < 1e-12, "{i} {j}: {rate}");
             }
         }
     }
@@ -183,14 +177,10 @@ mod tests {
         for i in 0..40 {
             for j in -20..20 {
                 let rate = at(i, j);
-                assert!(
-                    at(i + 1, j) <= rate + 1e-12 && at(i, j + 1) <= rate + 1e-12,
-                    "{i} {j}"
-                );
-                assert!(
-                    (SETTINGS.slowest - 1e-12..=1.0).contains(&rate),
-                    "{i} {j}: {rate}"
-                );
+                let [larger, growing] = [at(i + 1, j), at(i, j + 1)];
+                assert!(larger <= rate + 1e-12 && growing <= rate + 1e-12, "{i} {j}");
+                let range = SETTINGS.slowest - 1e-12..=1.0;
+                assert!(range.contains(&rate), "{i} {j}: {rate}");
             }
         }
     }
@@ -199,14 +189,9 @@ mod tests {
     fn memberships_are_a_partition() {
         for x in [-2.0, -1.0, -0.3, 0.0, 0.7, 1.0, 9.0] {
             let degrees = memberships(x);
-            assert!(
-                degrees.iter().all(|d| (0.0..=1.0).contains(d)),
-                "{x}: {degrees:?}"
-            );
-            assert!(
-                (degrees.iter().sum::<f64>() - 1.0).abs() < 1e-15,
-                "{x}: {degrees:?}"
-            );
+            let is_one = (degrees.iter().sum::<f64>() - 1.0).abs() < 1e-15;
+            let are_parts = degrees.iter().all(|d| (0.0..=1.0).contains(d));
+            assert!(is_one && are_parts, "{x}: {degrees:?}");
         }
     }
 }

@@ -49,11 +49,8 @@ pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise, gamma_ratio: f64) -> 
     let [mut low, mut high] = GAMMAS.map(libm::log);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if gains_at(axis, noise, libm::exp(middle)).is_some() {
-            high = middle;
-        } else {
-            low = middle;
-        }
+        let holds = gains_at(axis, noise, libm::exp(middle)).is_some();
+        *(if holds { &mut high } else { &mut low }) = middle;
     }
     gains_at(axis, noise, gamma_ratio * libm::exp(high)).unwrap_or_default()
 }
@@ -149,10 +146,8 @@ mod tests {
     #[test]
     fn without_a_bound_on_the_worst_case_it_is_the_kalman_filter() {
         let (axis, noise) = (rejection::axis(0.0), AxisNoise::DEFAULT);
-        let [found, expected] = [
-            gains_at(&axis, &noise, 1e6).unwrap(),
-            kalman_disturbance::gains(&axis, &noise),
-        ];
+        let found = gains_at(&axis, &noise, 1e6).unwrap();
+        let expected = kalman_disturbance::gains(&axis, &noise);
         for (found, expected) in found.iter().zip(expected) {
             assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
         }
@@ -161,13 +156,7 @@ mod tests {
     /// Largest gain from a source to the error of the disturbance, each over its size, at any
     /// frequency.
     fn worst_gain(axis: &SampledAxis, noise: &AxisNoise, gains: [f64; 3]) -> f64 {
-        let SampledAxis {
-            alpha,
-            beta,
-            gamma_s,
-            delta_s,
-            ..
-        } = *axis;
+        let [alpha, beta, gamma_s, delta_s] = axis.coefficients();
         let [l1, l2, l3] = gains;
         let sources = [
             [0.0, 0.0, noise.drift_mm_s],
@@ -176,33 +165,26 @@ mod tests {
         ];
         let system = |z: nalgebra::Complex<f64>| {
             let real = nalgebra::Complex::from;
-            nalgebra::Matrix3::new(
-                z - (1.0 - l1),
-                real(-gamma_s),
-                real(-delta_s),
-                real(l2),
-                z - alpha,
-                real(-beta),
-                real(l3),
-                real(0.0),
-                z - 1.0,
+            nalgebra::Matrix3::from_row_slice(
+                &[
+                    [z - (1.0 - l1), real(-gamma_s), real(-delta_s)],
+                    [real(l2), z - alpha, real(-beta)],
+                    [real(l3), real(0.0), z - 1.0],
+                ]
+                .concat(),
             )
         };
         let at = |angle: f64| {
             let z = nalgebra::Complex::new(libm::cos(angle), libm::sin(angle));
             let inverse = system(z).try_inverse().unwrap();
             let squares = sources.iter().map(|source| {
-                let source = nalgebra::Vector3::from_iterator(
-                    source.iter().map(|x| nalgebra::Complex::from(*x)),
-                );
+                let source = nalgebra::Vector3::from(source.map(nalgebra::Complex::from));
                 (inverse * source)[2].norm_sqr()
             });
             libm::sqrt(squares.sum())
         };
-        (1..3000)
-            .map(|n| at(libm::pow(10.0, -4.0 + 4.497 * f64::from(n) / 3000.0)))
-            .fold(0.0, f64::max)
-            / noise.drift_mm_s
+        let gain = |n: u32| at(libm::pow(10.0, -4.0 + 4.497 * f64::from(n) / 3000.0));
+        (1..3000).map(gain).fold(0.0, f64::max) / noise.drift_mm_s
     }
 
     #[test]

@@ -30,6 +30,8 @@ use feedwright_control::{
     Command, Controller, Feedforward, MAX_PREVIEW, Measured, Parameter, Schedule,
 };
 
+use super::deciding;
+
 /// Settings of the shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Settings {
@@ -87,18 +89,13 @@ struct Shaper([Impulse; 3]);
 
 impl Shaper {
     fn new(settings: &Settings) -> Self {
-        let Settings {
-            frequency_hz,
-            damping_ratio,
-            impulses,
-        } = *settings;
-        let root = libm::sqrt(1.0 - damping_ratio * damping_ratio);
-        let half_s = 0.5 / (frequency_hz * root);
-        let k = libm::exp(-damping_ratio * core::f64::consts::PI / root);
-        let [first, second, third] = if impulses > 2 {
-            [1.0, 2.0 * k, k * k]
-        } else {
-            [1.0, k, 0.0]
+        let zeta = settings.damping_ratio;
+        let root = libm::sqrt(1.0 - zeta * zeta);
+        let half_s = 0.5 / (settings.frequency_hz * root);
+        let k = libm::exp(-zeta * core::f64::consts::PI / root);
+        let [first, second, third] = match settings.impulses {
+            3.. => [1.0, 2.0 * k, k * k],
+            _ => [1.0, k, 0.0],
         };
         let sum = first + second + third;
         let mean_s = (second * half_s + third * 2.0 * half_s) / sum;
@@ -106,22 +103,16 @@ impl Shaper {
             weight: weight / sum,
             ahead_s: mean_s - at_s,
         };
-        Self([
-            impulse(first, 0.0),
-            impulse(second, half_s),
-            impulse(third, 2.0 * half_s),
-        ])
+        let [second, third] = [impulse(second, half_s), impulse(third, 2.0 * half_s)];
+        Self([impulse(first, 0.0), second, third])
     }
 
     /// The shaped reference at a plan time; rest stays at rest to the bit.
     fn at<const N: usize>(&self, preview: &Preview<N>, tau_s: f64) -> [f64; N] {
         let here_mm = preview.at(tau_s).position_mm;
         let moved = |sum_mm, impulse: &Impulse| {
-            add_scaled(
-                sum_mm,
-                impulse.weight,
-                sub(preview.at(tau_s + impulse.ahead_s).position_mm, here_mm),
-            )
+            let there_mm = preview.at(tau_s + impulse.ahead_s).position_mm;
+            add_scaled(sum_mm, impulse.weight, sub(there_mm, here_mm))
         };
         add_scaled(here_mm, 1.0, self.0.iter().fold([0.0; N], moved))
     }
@@ -160,10 +151,7 @@ impl<const N: usize> InputShaping<N> {
 
 impl<const N: usize> Controller<N> for InputShaping<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: 1,
-            preview: self.preview,
-        }
+        deciding(1, self.preview)
     }
 
     fn reset(&mut self) {
@@ -178,9 +166,8 @@ impl<const N: usize> Controller<N> for InputShaping<N> {
         let shaped = |tau_s: f64| shaper.at(window.preview, tau_s);
         let beside_mm = |tau_s: f64| sub(shaped(tau_s), window.preview.at(tau_s).position_mm);
         let last_mm = sub(window.offset_mm, beside_mm(window.tau_s));
-        let lead_mm =
-            self.feedforward
-                .lead_mm(|after_s| shaped(next_s + after_s), last_mm, [0.0; N]);
+        let at_mm = |after_s| shaped(next_s + after_s);
+        let lead_mm = self.feedforward.lead_mm(at_mm, last_mm, [0.0; N]);
         Command::straight(1.0, add_scaled(lead_mm, 1.0, beside_mm(next_s)))
     }
 }
@@ -202,11 +189,8 @@ mod tests {
         let zeta = settings.damping_ratio;
         let rad_s = core::f64::consts::TAU * frequency_hz;
         let Shaper(impulses) = Shaper::new(settings);
-        let last_s = impulses
-            .iter()
-            .filter(|i| i.weight > 0.0)
-            .map(|i| -i.ahead_s)
-            .fold(f64::MIN, f64::max);
+        let there = impulses.iter().filter(|i| i.weight > 0.0);
+        let last_s = there.map(|i| -i.ahead_s).fold(f64::MIN, f64::max);
         let (mut sin, mut cos) = (0.0, 0.0);
         for Impulse { weight, ahead_s } in impulses {
             let since_s = last_s + ahead_s;
@@ -231,10 +215,9 @@ mod tests {
             let [one, squared] = [zv, zvd].map(|settings| left(&settings, 71.4));
             if damping_ratio == 0.0 {
                 let off = 0.02 * core::f64::consts::FRAC_PI_2;
-                assert!(
-                    (one / off - 1.0).abs() < 1e-3 && (squared / (off * off) - 1.0).abs() < 1e-3,
-                    "{one} {squared}"
-                );
+                let [by_one, by_square] = [one / off, squared / (off * off)];
+                assert!((by_one - 1.0).abs() < 1e-3, "{one}");
+                assert!((by_square - 1.0).abs() < 1e-3, "{squared}");
             }
             assert!(
                 squared < 0.1 * one && one > 1e-3,
@@ -244,21 +227,9 @@ mod tests {
     }
 
     /// A shaper before loops that follow without any lag: its command is the shaped path.
-    fn shaped(
-        path: &mut dyn KnotSource<2>,
-        settings: &Settings,
-        each: impl FnMut(usize, [f64; 2]),
-    ) {
-        let nothing = Gains {
-            velocity: 0.0,
-            acceleration: 0.0,
-            friction: 0.0,
-        };
-        let mut controller = InputShaping::new(
-            Feedforward::new([inverse(axis(0.02, 0.2)); 2], [nothing; 2]),
-            settings,
-            SERVO_S,
-        );
+    fn shaped(path: &mut dyn KnotSource<2>, of: &Settings, each: impl FnMut(usize, [f64; 2])) {
+        let nothing = Feedforward::new([inverse(axis(0.02, 0.2)); 2], [Gains::NONE; 2]);
+        let mut controller = InputShaping::new(nothing, of, SERVO_S);
         commands(path, &mut controller, SERVO_S, each);
     }
 
@@ -271,12 +242,8 @@ mod tests {
                 impulses,
             };
             shaped(&mut Line, &settings, |n, [x, _]| {
-                if n > 100 {
-                    assert!(
-                        (x - 50.0 * n as f64 * SERVO_S).abs() < 1e-12 * 50.0,
-                        "{n}: {x}"
-                    );
-                }
+                let is_there = (x - 50.0 * n as f64 * SERVO_S).abs() < 1e-12 * 50.0;
+                assert!(n <= 100 || is_there, "{n}: {x}");
             });
         }
         // Two equal impulses, Td / 2 apart: R cos(omega Td / 4).
@@ -289,10 +256,8 @@ mod tests {
         shaped(&mut Circle, &settings, |n, at| {
             if n > 100 {
                 let radius = norm(sub(at, [10.0, 0.0]));
-                assert!(
-                    (radius - 10.0 * libm::cos(5.0 / 160.0)).abs() < 1e-8,
-                    "{n}: {radius}"
-                );
+                let expected = 10.0 * libm::cos(5.0 / 160.0);
+                assert!((radius - expected).abs() < 1e-8, "{n}: {radius}");
                 seen += 1;
             }
         });

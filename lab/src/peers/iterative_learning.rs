@@ -25,6 +25,8 @@
 use feedwright_control::vector::{add_scaled, norm};
 use feedwright_control::{Command, Controller, Measured, Parameter, Schedule, Window};
 
+use super::deciding;
+
 /// Part of the error that a lap takes up.
 pub(super) const GAIN: Parameter = Parameter::number(
     "gain",
@@ -128,10 +130,7 @@ impl<const N: usize> IterativeLearning<N> {
 
 impl<const N: usize> Controller<N> for IterativeLearning<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: self.settings.servo_periods,
-            preview: 1,
-        }
+        deciding(self.settings.servo_periods, 1)
     }
 
     /// Forgets all that was learned.
@@ -164,13 +163,8 @@ impl<const N: usize> Controller<N> for IterativeLearning<N> {
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let now = self.decision(window.tau_s);
-        let offset_mm = self
-            .offsets_mm
-            .get(now + 1)
-            .or(self.offsets_mm.last())
-            .copied()
-            .unwrap_or([0.0; N]);
-        Command::straight(1.0, offset_mm)
+        let offset_mm = self.offsets_mm.get(now + 1).or(self.offsets_mm.last());
+        Command::straight(1.0, offset_mm.copied().unwrap_or([0.0; N]))
     }
 }
 
@@ -186,11 +180,8 @@ fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
     let k = libm::tan(std::f64::consts::PI * cut_off);
     let root = std::f64::consts::SQRT_2 * k;
     let scale = 1.0 / (1.0 + root + k * k);
-    let (b, a1, a2) = (
-        k * k * scale,
-        2.0 * (k * k - 1.0) * scale,
-        (1.0 - root + k * k) * scale,
-    );
+    let (b, a1) = (k * k * scale, 2.0 * (k * k - 1.0) * scale);
+    let a2 = (1.0 - root + k * k) * scale;
     let pass = |values: &mut dyn Iterator<Item = &mut [f64; N]>| {
         let mut past: Option<[[f64; N]; 4]> = None;
         for value in values {
@@ -235,13 +226,9 @@ mod tests {
     /// One lap with two first-order loops of 50 1/s and 45 1/s: RMS of the distance from the
     /// circle, mm.
     fn lap(controller: &mut IterativeLearning<2>) -> f64 {
-        let mut tick = Tick::new(
-            SERVO_S,
-            controller.schedule(),
-            Bounds::new(0.5, 400.0, 400.0),
-        );
-        let mut tool_mm = [0.0; 2];
-        let mut squares = 0.0;
+        let bounds = Bounds::new(0.5, 400.0, 400.0);
+        let mut tick = Tick::new(SERVO_S, controller.schedule(), bounds);
+        let (mut tool_mm, mut squares) = ([0.0; 2], 0.0);
         let periods = (PROGRAM_S / SERVO_S) as u32;
         for _ in 0..periods {
             let command_mm = tick.step(&mut Circle, controller, tool_mm).command_mm;
@@ -258,20 +245,15 @@ mod tests {
         let mut controller = IterativeLearning::new(Settings::DEFAULT, SERVO_S);
         let first_mm = lap(&mut controller);
         let again_mm = lap(&mut controller);
-        assert_eq!(
-            first_mm.to_bits(),
-            again_mm.to_bits(),
-            "nothing is learned before the next lap"
-        );
+        let why = "nothing is learned before the next lap";
+        assert_eq!(first_mm.to_bits(), again_mm.to_bits(), "{why}");
         let mut laps_mm = vec![first_mm];
         for _ in 1..10 {
             controller.next_lap();
             laps_mm.push(lap(&mut controller));
         }
-        assert!(
-            laps_mm[1] < 0.5 * laps_mm[0] && laps_mm[9] < 0.05 * laps_mm[0],
-            "{laps_mm:?}"
-        );
+        let learns = laps_mm[1] < 0.5 * laps_mm[0] && laps_mm[9] < 0.05 * laps_mm[0];
+        assert!(learns, "{laps_mm:?}");
         controller.reset();
         assert_eq!(lap(&mut controller).to_bits(), first_mm.to_bits());
     }
@@ -284,10 +266,10 @@ mod tests {
             let mut values: Vec<[f64; 1]> = (0..2001).map(|k| [wave(k)]).collect();
             smooth(&mut values, 20.0 * SERVO_S);
             for k in 500..1500 {
+                let [value] = values[k];
                 assert!(
-                    (values[k][0] - part * wave(k)).abs() < 1e-4,
-                    "{hz} Hz at {k}: {}",
-                    values[k][0]
+                    (value - part * wave(k)).abs() < 1e-4,
+                    "{hz} Hz at {k}: {value}"
                 );
             }
         }
@@ -295,13 +277,11 @@ mod tests {
 
     #[test]
     fn absurd_settings_and_measurements_learn_nothing_absurd() {
-        let mut long = IterativeLearning::<2>::new(
-            Settings {
-                lead_s: 1e9,
-                ..Settings::DEFAULT
-            },
-            SERVO_S,
-        );
+        let settings = Settings {
+            lead_s: 1e9,
+            ..Settings::DEFAULT
+        };
+        let mut long = IterativeLearning::<2>::new(settings, SERVO_S);
         lap(&mut long);
         long.next_lap();
         assert!(lap(&mut long).is_finite());

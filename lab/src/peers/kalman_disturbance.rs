@@ -165,19 +165,15 @@ mod tests {
         let rad_s: f64 = 2.0;
         let encoder_mm = 1e-3;
         let drift_mm_s = rad_s.powi(3) * encoder_mm * SERVO_S * SERVO_S / b;
-        let [l1, l2, l3] = gains(
-            &axis,
-            &AxisNoise {
-                drift_mm_s,
-                torque_mm_s: 0.0,
-                encoder_mm,
-            },
-        );
+        let noise = AxisNoise {
+            drift_mm_s,
+            torque_mm_s: 0.0,
+            encoder_mm,
+        };
+        let [l1, l2, l3] = gains(&axis, &noise);
         let found = [l1 / SERVO_S, l2 / SERVO_S, l3 * b / (SERVO_S * SERVO_S)];
-        for (found, expected) in found
-            .iter()
-            .zip([2.0 * rad_s, 2.0 * rad_s * rad_s, rad_s.powi(3)])
-        {
+        let expected = [2.0 * rad_s, 2.0 * rad_s * rad_s, rad_s.powi(3)];
+        for (found, expected) in found.iter().zip(expected) {
             // Sampling is off by w Ts, 0.2 %, in each.
             assert!(
                 (found / expected - 1.0).abs() < 0.01,
@@ -189,19 +185,10 @@ mod tests {
     /// Variances of the errors of position, speed and disturbance under any gains: P = (A - L C) P
     /// (A - L C)' + Q + L s^2 L'.
     fn variances(axis: &SampledAxis, noise: &AxisNoise, gains: [f64; 3]) -> [f64; 3] {
-        let SampledAxis {
-            alpha,
-            beta,
-            gamma_s,
-            delta_s,
-            ..
-        } = *axis;
+        let [alpha, beta, gamma_s, delta_s] = axis.coefficients();
         let [l1, l2, l3] = gains;
-        let step = [
-            [1.0 - l1, gamma_s, delta_s],
-            [-l2, alpha, beta],
-            [-l3, 0.0, 1.0],
-        ];
+        let position = [1.0 - l1, gamma_s, delta_s];
+        let step = [position, [-l2, alpha, beta], [-l3, 0.0, 1.0]];
         let sources = [
             [noise.torque_mm_s * delta_s, noise.torque_mm_s * beta, 0.0],
             [0.0, 0.0, noise.drift_mm_s],
@@ -229,12 +216,8 @@ mod tests {
                 let mut other = best;
                 other[changed] *= factor;
                 let variances = variances(&axis, &noise, other);
-                for i in 0..3 {
-                    assert!(
-                        variances[i] > least[i] * (1.0 + 1e-9),
-                        "{changed} {factor}: {variances:?} {least:?}"
-                    );
-                }
+                let is_larger = (0..3).all(|i| variances[i] > least[i] * (1.0 + 1e-9));
+                assert!(is_larger, "{changed} {factor}: {variances:?} {least:?}");
             }
         }
     }

@@ -27,6 +27,8 @@ use feedwright_sim::{Known, KnownAxis};
 use horizon::{CommandedPeriod, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Sensitivity};
 use residual::{DisturbanceForecast, Residual, ResidualSettings};
 
+use super::deciding;
+
 /// Steps of Gauss and Newton, at most.
 const MAX_STEPS: usize = 20;
 /// Converged: no acceleration of the offset changes by more, mm/s^2; a tenth of a micrometre per
@@ -127,10 +129,10 @@ impl<const N: usize> ModelPredictive<N> {
 
 impl<const N: usize> Controller<N> for ModelPredictive<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: self.settings.servo_periods,
-            preview: self.settings.horizon.knots as u32,
-        }
+        deciding(
+            self.settings.servo_periods,
+            self.settings.horizon.knots as u32,
+        )
     }
 
     fn reset(&mut self) {

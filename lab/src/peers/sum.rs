@@ -26,6 +26,8 @@ use feedwright_control::vector::{add_scaled, sub};
 
 use feedwright_control::{Command, Controller, Measured, Schedule};
 
+use super::deciding;
+
 /// Two controllers that decide in every servo period at the planned feed; the second may not bend
 /// its offset.
 #[derive(Debug, Clone)]
@@ -50,10 +52,7 @@ impl<A: Controller<N>, B: Controller<N>, const N: usize> Sum<A, B, N> {
 impl<A: Controller<N>, B: Controller<N>, const N: usize> Controller<N> for Sum<A, B, N> {
     fn schedule(&self) -> Schedule {
         let (first, second) = (self.first.schedule(), self.second.schedule());
-        Schedule {
-            servo_periods: 1,
-            preview: first.preview.max(second.preview),
-        }
+        deciding(1, first.preview.max(second.preview))
     }
 
     fn reset(&mut self) {
@@ -103,9 +102,8 @@ mod tests {
     #[test]
     fn the_parts_of_a_feedforward_add_up_to_all_of_it() {
         let friction = Gains {
-            velocity: 0.0,
-            acceleration: 0.0,
             friction: 1.0,
+            ..Gains::NONE
         };
         let rest = Gains {
             friction: 0.0,
@@ -113,17 +111,13 @@ mod tests {
         };
         for kd in [0.0, 0.05] {
             let (mut whole_mm, mut worst_mm, mut largest_mm) = ([[0.0; 2]; 1000], 0.0_f64, 0.0_f64);
-            commands(
-                &mut Circle,
-                &mut feedforward(Gains::EXACT, kd),
-                SERVO_S,
-                |n, mm| whole_mm[n] = mm,
-            );
+            let all = &mut feedforward(Gains::EXACT, kd);
+            commands(&mut Circle, all, SERVO_S, |n, mm| whole_mm[n] = mm);
             let mut sum = Sum::new(feedforward(rest, kd), feedforward(friction, kd));
             commands(&mut Circle, &mut sum, SERVO_S, |n, mm| {
                 worst_mm = worst_mm.max(norm(sub(mm, whole_mm[n])));
-                largest_mm =
-                    largest_mm.max(norm(sub(mm, Circle.knot(n as f64 * SERVO_S).position_mm)));
+                let path_mm = Circle.knot(n as f64 * SERVO_S).position_mm;
+                largest_mm = largest_mm.max(norm(sub(mm, path_mm)));
             });
             assert!(
                 worst_mm < 1e-12 && largest_mm > 0.9,
@@ -138,10 +132,7 @@ mod tests {
 
     impl Controller<2> for Ahead {
         fn schedule(&self) -> Schedule {
-            Schedule {
-                servo_periods: 1,
-                preview: 0,
-            }
+            deciding(1, 0)
         }
 
         fn reset(&mut self) {}
@@ -162,16 +153,10 @@ mod tests {
         let [x_mm, y_mm] = cut(&mut Line, &mut sum, [0.0, 0.02], 1000);
         // Alone, the second leaves a quarter of the error across the path (1 / (1 + kp)), and the
         // first takes up a lag of 20 periods.
-        let [lagging_mm, alone_mm] = cut(
-            &mut Line,
-            &mut CrossCoupled::new(settings),
-            [0.0, 0.02],
-            1000,
-        );
-        assert!(
-            (y_mm - 0.005).abs() < 1e-9 && (y_mm - alone_mm).abs() < 1e-12,
-            "{y_mm} {alone_mm}"
-        );
+        let alone = &mut CrossCoupled::new(settings);
+        let [lagging_mm, alone_mm] = cut(&mut Line, alone, [0.0, 0.02], 1000);
+        assert!((y_mm - 0.005).abs() < 1e-9, "{y_mm}");
+        assert!((y_mm - alone_mm).abs() < 1e-12, "{y_mm} {alone_mm}");
         assert!(
             (x_mm - lagging_mm - 1.0).abs() < 1e-9,
             "{x_mm} {lagging_mm}"

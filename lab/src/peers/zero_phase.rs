@@ -39,6 +39,8 @@ use feedwright_control::{
     Command, Controller, MAX_PREVIEW, Measured, Parameter, Schedule, preview,
 };
 
+use super::deciding;
+
 /// One axis between two servo periods: the effect of its speed and of the reference speed that is
 /// held.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,16 +99,9 @@ pub(super) struct Filter {
 impl Filter {
     /// Creates the filter for an axis with a plain P speed loop, with a servo period of `servo_s`.
     pub(super) fn new(axis: &SampledAxis, servo_s: f64) -> Self {
-        let SampledAxis {
-            alpha,
-            beta,
-            gamma_s,
-            delta_s: d,
-            kp_1_s,
-            kd,
-        } = *axis;
+        let ([alpha, beta, gamma_s, d], kd) = (axis.coefficients(), axis.kd);
         let e = gamma_s * beta - alpha * d;
-        let gain = kp_1_s + kd / servo_s;
+        let gain = axis.kp_1_s + kd / servo_s;
         let pole = kd / (servo_s * gain);
         let a = [
             1.0,
@@ -123,10 +118,8 @@ impl Filter {
             d * a[3],
         ];
         let mut weights = [0.0; MAX_WEIGHTS];
-        weights
-            .iter_mut()
-            .zip(of_reference)
-            .for_each(|(to, weight)| *to = weight / sum);
+        let each = weights.iter_mut().zip(of_reference);
+        each.for_each(|(to, weight)| *to = weight / sum);
         let mut feedback = [0.0; MAX_CANCELLED];
         feedback[0] = pole;
         Self {
@@ -147,23 +140,18 @@ impl Filter {
     pub(super) fn of_loop(of_reference: &[f64], ahead: u32, cancelled: &[f64]) -> Option<Self> {
         let (_, before) = cancelled.split_first()?;
         let (sum, direct): (f64, f64) = (of_reference.iter().sum(), cancelled.iter().sum());
-        let finite = sum.abs() > 0.0
-            && of_reference
-                .iter()
-                .chain(cancelled)
-                .all(|value| (value / sum).is_finite());
+        let mut all = of_reference.iter().chain(cancelled);
+        let finite = sum.abs() > 0.0 && all.all(|value| (value / sum).is_finite());
         if !finite || of_reference.len() > MAX_WEIGHTS || before.len() > MAX_CANCELLED {
             return None;
         }
         let (mut weights, mut feedback) = ([0.0; MAX_WEIGHTS], [0.0; MAX_CANCELLED]);
-        weights
-            .iter_mut()
-            .zip(of_reference)
-            .for_each(|(to, weight)| *to = weight / sum);
-        feedback
-            .iter_mut()
-            .zip(before)
-            .for_each(|(to, value)| *to = -value);
+        for (to, weight) in weights.iter_mut().zip(of_reference) {
+            *to = weight / sum;
+        }
+        for (to, value) in feedback.iter_mut().zip(before) {
+            *to = -value;
+        }
         Some(Self {
             weights,
             ahead,
@@ -189,15 +177,11 @@ impl Filter {
     ) -> f64 {
         let here_mm = at_mm(0.0);
         let after = |tap: usize| f64::from(self.ahead) - tap as f64;
-        let weights = self.weights().iter().enumerate();
-        let filtered: f64 = weights
-            .map(|(tap, weight)| weight * (at_mm(after(tap)) - here_mm))
-            .sum();
+        let by_weight = |(tap, weight): (usize, &f64)| weight * (at_mm(after(tap)) - here_mm);
+        let filtered: f64 = self.weights().iter().enumerate().map(by_weight).sum();
         let feedback = self.feedback.iter().zip(commanded_mm);
-        feedback
-            .map(|(part, command_mm)| part * (command_mm - here_mm))
-            .sum::<f64>()
-            + self.direct * filtered
+        let fed_back = feedback.map(|(part, command_mm)| part * (command_mm - here_mm));
+        fed_back.sum::<f64>() + self.direct * filtered
     }
 }
 
@@ -226,6 +210,11 @@ impl<const N: usize> ZeroPhase<N> {
 }
 
 impl SampledAxis {
+    /// Alpha, beta, gamma and delta.
+    pub(super) fn coefficients(&self) -> [f64; 4] {
+        [self.alpha, self.beta, self.gamma_s, self.delta_s]
+    }
+
     /// The lags of the position loop and of the speed loop, s; the second is J / (kv + B).
     pub(super) fn lag_s(&self) -> f64 {
         1.0 / self.kp_1_s + self.gamma_s / (1.0 - self.alpha)
@@ -234,10 +223,7 @@ impl SampledAxis {
 
 impl<const N: usize> Controller<N> for ZeroPhase<N> {
     fn schedule(&self) -> Schedule {
-        Schedule {
-            servo_periods: 1,
-            preview: self.preview,
-        }
+        deciding(1, self.preview)
     }
 
     fn reset(&mut self) {
@@ -261,12 +247,8 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
         let [newest_mm, ..] = commanded_mm;
         *newest_mm = command_mm;
         let offset_mm = core::array::from_fn(|i| {
-            let at_mm = |ahead: f64| {
-                window
-                    .preview
-                    .at(next_s + ahead * window.servo_s())
-                    .position_mm[i]
-            };
+            let at = |ahead: f64| window.preview.at(next_s + ahead * window.servo_s());
+            let at_mm = |ahead: f64| at(ahead).position_mm[i];
             self.filters[i].offset_mm(commanded_mm.iter().map(|command_mm| command_mm[i]), at_mm)
         });
         Command::straight(1.0, offset_mm)
@@ -276,25 +258,11 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::peers::fixture::commands;
+    use crate::peers::fixture::{commands, sampled};
     use feedwright_control::{Knot, KnotSource};
 
     const SERVO_S: f64 = 0.001;
     const AMPLITUDE_MM: f64 = 0.1;
-
-    /// A first-order speed loop of 200 rad/s, held exactly.
-    fn axis(kd: f64) -> SampledAxis {
-        let alpha = libm::exp(-200.0 * SERVO_S);
-        let gamma_s = (1.0 - alpha) / 200.0;
-        SampledAxis {
-            alpha,
-            beta: 1.0 - alpha,
-            gamma_s,
-            delta_s: SERVO_S - gamma_s,
-            kp_1_s: 50.0,
-            kd,
-        }
-    }
 
     /// 20 mm/s and a tenth of a millimetre at `rad_s` across it.
     struct Wave {
@@ -317,26 +285,22 @@ mod tests {
     /// Drives two linear axes for a second; calls `each` with the time and the tool at the end of
     /// each servo period.
     fn drive(kd: f64, rad_s: f64, mut each: impl FnMut(f64, [f64; 2])) {
-        let model = axis(kd);
-        let mut controller =
-            ZeroPhase::new([Filter::new(&model, SERVO_S); 2], model.lag_s(), SERVO_S);
+        let model = sampled(kd);
+        let filters = [Filter::new(&model, SERVO_S); 2];
+        let mut controller = ZeroPhase::new(filters, model.lag_s(), SERVO_S);
         let (mut tool_mm, mut speed, mut last_mm) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-        commands(
-            &mut Wave { rad_s },
-            &mut controller,
-            SERVO_S,
-            |n, command_mm| {
-                for i in 0..2 {
-                    let error_mm = command_mm[i] - tool_mm[i];
-                    let reference =
-                        model.kp_1_s * error_mm + model.kd * (error_mm - last_mm[i]) / SERVO_S;
-                    last_mm[i] = error_mm;
-                    tool_mm[i] += model.gamma_s * speed[i] + model.delta_s * reference;
-                    speed[i] = model.alpha * speed[i] + model.beta * reference;
-                }
-                each((n + 1) as f64 * SERVO_S, tool_mm);
-            },
-        );
+        let path = &mut Wave { rad_s };
+        commands(path, &mut controller, SERVO_S, |n, command_mm| {
+            for i in 0..2 {
+                let error_mm = command_mm[i] - tool_mm[i];
+                let change_mm_s = (error_mm - last_mm[i]) / SERVO_S;
+                let reference = model.kp_1_s * error_mm + model.kd * change_mm_s;
+                last_mm[i] = error_mm;
+                tool_mm[i] += model.gamma_s * speed[i] + model.delta_s * reference;
+                speed[i] = model.alpha * speed[i] + model.beta * reference;
+            }
+            each((n + 1) as f64 * SERVO_S, tool_mm);
+        });
     }
 
     #[test]
@@ -358,26 +322,13 @@ mod tests {
                 });
                 let det = ss * cc - sc * sc;
                 let (in_phase, quadrature) = ((ys * cc - yc * sc) / det, (yc * ss - ys * sc) / det);
-                let SampledAxis {
-                    alpha,
-                    beta,
-                    gamma_s,
-                    delta_s,
-                    ..
-                } = axis(kd);
-                let epsilon = gamma_s * beta - alpha * delta_s;
-                let zero = delta_s * delta_s
-                    + epsilon * epsilon
-                    + 2.0 * delta_s * epsilon * libm::cos(rad_s * SERVO_S);
-                let gain = zero / ((delta_s + epsilon) * (delta_s + epsilon));
-                assert!(
-                    (in_phase / AMPLITUDE_MM - gain).abs() < 1e-6,
-                    "{rad_s} rad/s, kd {kd}: {in_phase}"
-                );
-                assert!(
-                    (quadrature / AMPLITUDE_MM).abs() < 1e-6,
-                    "{rad_s} rad/s, kd {kd}: {quadrature}"
-                );
+                let [alpha, beta, gamma_s, d] = sampled(kd).coefficients();
+                let e = gamma_s * beta - alpha * d;
+                let zero = d * d + e * e + 2.0 * d * e * libm::cos(rad_s * SERVO_S);
+                let gain = zero / ((d + e) * (d + e));
+                let here = format!("{rad_s} rad/s, kd {kd}: {in_phase} {quadrature}");
+                assert!((in_phase / AMPLITUDE_MM - gain).abs() < 1e-6, "{here}");
+                assert!((quadrature / AMPLITUDE_MM).abs() < 1e-6, "{here}");
             }
         }
     }
@@ -385,13 +336,9 @@ mod tests {
     #[test]
     fn a_ramp_is_followed_exactly() {
         drive(0.0, 0.0, |t_s, tool_mm| {
-            if t_s > 0.9 {
-                assert!(
-                    (tool_mm[0] - 20.0 * t_s).abs() < 1e-9,
-                    "{t_s} s: {} mm",
-                    tool_mm[0]
-                );
-            }
+            let [x_mm, _] = tool_mm;
+            let is_there = (x_mm - 20.0 * t_s).abs() < 1e-9;
+            assert!(t_s <= 0.9 || is_there, "{t_s} s: {x_mm} mm");
         });
     }
 }

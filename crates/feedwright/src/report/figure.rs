@@ -10,11 +10,14 @@ mod svg;
 
 use std::io::{self, Write};
 
+use serde::Deserialize;
+
 use super::plain_page::{PagePart, write_foot, write_head};
 use super::text::escaped;
 
 /// Panels side by side or in rows, with one legend for all.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
 pub struct Figure {
     /// Panels, row by row.
     pub panels: Vec<Panel>,
@@ -25,7 +28,8 @@ pub struct Figure {
 }
 
 /// One plotting area.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
 pub struct Panel {
     /// Text above the area, as in "(a) Contour error"; may be empty.
     pub title: String,
@@ -47,7 +51,8 @@ pub struct Panel {
 }
 
 /// A polyline.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
 pub struct Polyline {
     /// Name in the legend; curves of equal name in several panels share an entry, an empty name has
     /// none.
@@ -61,7 +66,7 @@ pub struct Polyline {
 }
 
 /// Stroke of a [`Polyline`].
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 pub enum LineStyle {
     /// Solid line.
     #[default]

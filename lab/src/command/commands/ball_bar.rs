@@ -1,14 +1,14 @@
 //! `feedwright-lab ball-bar`: a ball bar on a simulated machine.
-use std::io::Write;
 use std::process::ExitCode;
 
-use feedwright::command::{Console, printed, remark, tables, tell_written};
-use feedwright::{OutputError, OutputFile, OutputFiles};
+use feedwright::OutputFiles;
+use feedwright::command::{Console, remark};
 use feedwright_ident::{BallBarProgram, Circularity, GeometryInput, SimulatedBallBar};
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::command::args::ball_bar::BallBarArgs;
+use crate::command::sweep::{say_place, write_text};
 
 /// Samples of a circle: as many as usual bars take.
 const SAMPLES: u32 = 3600;
@@ -53,25 +53,20 @@ pub(crate) fn run(args: &BallBarArgs, console: &Console) -> Result<ExitCode> {
         seed,
     };
     let read = |path| {
-        std::fs::read_to_string(path)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot read {path:?}"))
+        let text = std::fs::read_to_string(path).into_diagnostic();
+        text.wrap_err_with(|| format!("cannot read {path:?}"))
     };
     let text = match &args.program {
         Some(path) => bar.text_of(&machine, &read(path)?)?,
         None => bar.text(&machine)?,
     };
-    let mut file = OutputFiles::new(args.program.as_deref()).start(&args.out)?;
-    file.write_all(text.as_bytes())
-        .map_err(|error| OutputError::from_io(error, &args.out))?;
-    OutputFile::commit_all(vec![file], &console.bar(0))?;
+    let files = OutputFiles::new(args.program.as_deref());
+    write_text(files, &args.out, &text, console)?;
     if let GeometryInput::Sets(sets) = GeometryInput::parse("the bar", &text, None)?
         && !console.is_quiet()
     {
-        sets.iter()
-            .filter_map(Circularity::of)
-            .for_each(|of| remark(&of.line()));
+        let found = sets.iter().filter_map(Circularity::of);
+        found.for_each(|of| remark(&of.line()));
     }
-    let out = Some(args.out.as_path());
-    printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
+    say_place(&args.out)
 }

@@ -8,12 +8,11 @@ use std::process::ExitCode;
 
 use feedwright::command::{Console, printed};
 use feedwright::{OutputFile, OutputFiles};
-use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
-use crate::command::args::compare::CompareArgs;
+use crate::command::args::compare::{CompareArgs, TuningSource};
 use crate::compare::{ComparisonOptions, compare, recorded, tune_alone};
-use crate::kept::Kept;
+use crate::study::Kept;
 
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     let options = options::options(args)?;
@@ -40,10 +39,8 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
         OutputFile::commit_all(vec![file], &bar)?;
     }
     if kept.found() > 0 {
-        eprintln!(
-            "parts of the work that an earlier run had finished: {}",
-            kept.found()
-        );
+        let found = kept.found();
+        eprintln!("parts of the work that an earlier run had finished: {found}");
     }
     kept.complete();
     printed(print::print(args, &comparison), ExitCode::SUCCESS)
@@ -51,26 +48,21 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
 
 /// A search takes a minute and more for each controller and machine.
 fn tell_searches(args: &CompareArgs, options: &ComparisonOptions) {
+    const NAMED: usize = 4;
     let searched = options.to_search();
-    if args.tuning() == crate::command::args::compare::TuningSource::Recorded
-        && !searched.is_empty()
-    {
-        const NAMED: usize = 4;
-        let names: Vec<String> = searched
-            .iter()
-            .take(NAMED)
-            .map(|(machine, name)| format!("{name} on {machine}"))
-            .collect();
-        let more = if searched.len() > NAMED {
-            format!(" and {} more", searched.len() - NAMED)
-        } else {
-            String::new()
-        };
-        eprintln!(
-            "no values are recorded of {}{more}: they are searched; --tuning defaults does without",
-            names.join(", ")
-        );
+    if args.tuning() != TuningSource::Recorded || searched.is_empty() {
+        return;
     }
+    let name = |(machine, name): &(String, &str)| format!("{name} on {machine}");
+    let names: Vec<String> = searched.iter().take(NAMED).map(name).collect();
+    let more = match searched.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    eprintln!(
+        "no values are recorded of {}{more}: they are searched; --tuning defaults does without",
+        names.join(", ")
+    );
 }
 
 /// Searches, and keeps the values: no cuts, no table.
@@ -80,45 +72,32 @@ fn record_searches(
     kept: Kept,
     console: &Console,
 ) -> Result<ExitCode> {
+    let shown = record.display();
     let old = match std::fs::read_to_string(record) {
-        Ok(text) => recorded::read(&text).into_diagnostic().wrap_err_with(|| {
-            format!(
-                "{} holds other things than recorded values",
-                record.display()
-            )
-        })?,
+        Ok(text) => recorded::read(&text)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{shown} holds other things than recorded values"))?,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        Err(error) => {
-            return Err(error)
-                .into_diagnostic()
-                .wrap_err_with(|| record.display().to_string());
-        }
+        Err(error) => return Err(error).into_diagnostic().wrap_err(shown.to_string()),
     };
     let bar = console.bar(0);
     let tuned = tune_alone(options, &kept, &bar);
     bar.clear();
     let tuned = tuned?;
-    let machines: Vec<Machine> = options
-        .machines
-        .iter()
-        .chain([&options.nominal])
-        .cloned()
-        .collect();
-    let mut file = OutputFiles::new(std::iter::empty::<&Path>()).start(record)?;
+    let machines = [
+        &options.machines[..],
+        std::slice::from_ref(&options.nominal),
+    ]
+    .concat();
+    let mut file = OutputFiles::default().start(record)?;
     file.write_all(recorded::text(old, &tuned, &machines, options.seed).as_bytes())
         .into_diagnostic()?;
     OutputFile::commit_all(vec![file], &bar)?;
     kept.complete();
-    let text = print::tuned(&tuned);
-    printed(
-        writeln!(
-            std::io::stdout(),
-            "{text}recorded {} searches in {}",
-            tuned.len(),
-            record.display()
-        ),
-        ExitCode::SUCCESS,
-    )
+    let (text, count) = (print::tuned(&tuned), tuned.len());
+    let mut out = std::io::stdout();
+    let printing = writeln!(out, "{text}recorded {count} searches in {shown}");
+    printed(printing, ExitCode::SUCCESS)
 }
 
 /// Starts the file that is asked for before the work begins.

@@ -1,12 +1,12 @@
 //! `feedwright-lab export-contour`: a built-in contour as a program.
-use std::io::Write;
 use std::process::ExitCode;
 
-use feedwright::command::{Console, printed, remark, tables, tell_written};
-use feedwright::{OutputError, OutputFile, OutputFiles};
+use feedwright::OutputFiles;
+use feedwright::command::{Console, remark};
 use miette::{Result, miette};
 
 use crate::command::args::export_contour::ExportContourArgs;
+use crate::command::sweep::{say_place, write_text};
 use crate::contour::contour;
 use crate::contour_program::contour_program;
 
@@ -33,22 +33,17 @@ pub(crate) fn run(args: &ExportContourArgs, console: &Console) -> Result<ExitCod
     let contour =
         contour(&args.contour).ok_or_else(|| miette!("no contour is called '{}'", args.contour))?;
     let program = contour_program(contour, feed, 1e-3 * tolerance)?;
-    let mut file = OutputFiles::default().start(&args.out)?;
-    file.write_all(program.text.as_bytes())
-        .map_err(|error| OutputError::from_io(error, &args.out))?;
-    OutputFile::commit_all(vec![file], &console.bar(0))?;
-    let (name, about, blocks) = (contour.name, contour.about, program.blocks);
+    write_text(OutputFiles::default(), &args.out, &program.text, console)?;
     if !console.is_quiet() {
-        let how = if program.is_exact {
-            String::new()
-        } else {
-            format!(" within {tolerance} um of the curve")
+        let how = match program.is_exact {
+            true => String::new(),
+            false => format!(" within {tolerance} um of the curve"),
         };
+        let (blocks, s) = (program.blocks, if program.blocks == 1 { "" } else { "s" });
         remark(&format!(
-            "{name}: {about}; {blocks} block{}{how}",
-            if blocks == 1 { "" } else { "s" }
+            "{}: {}; {blocks} block{s}{how}",
+            contour.name, contour.about
         ));
     }
-    let out = Some(args.out.as_path());
-    printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
+    say_place(&args.out)
 }

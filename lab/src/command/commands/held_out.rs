@@ -9,7 +9,7 @@ use feedwright_sim::Watch;
 use miette::{IntoDiagnostic, Result};
 
 use crate::command::args::held_out::HeldOutArgs;
-use crate::command::sweep::{Sweep, code};
+use crate::command::sweep::{Sweep, code, print};
 use crate::held_out::machines::Class;
 use crate::never_worse::SweepJob;
 use crate::never_worse::generated::{Generated, draw};
@@ -31,15 +31,11 @@ pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
         args.count, args.drawn_by, args.programs
     );
     let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
-    let mut done = sweep.run(&jobs, console)?;
-    let summary = SweepSummary::of(std::mem::take(&mut done.rows));
-    let printing = sweep
-        .write(&summary, console)
-        .map(|mut out| done.print(&summary, &mut out))?;
+    let (summary, printing) = sweep.run(&jobs, console, SweepSummary::of, print)?;
     if let Some(folder) = &args.failures {
         write_failures(folder, &summary.rows, &generated, &console.bar(0))?;
     }
-    printed(printing, code(summary.worse))
+    printed(printing, code(summary.worse > 0))
 }
 
 /// Writes the program and the machine of each failure.

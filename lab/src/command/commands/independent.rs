@@ -3,17 +3,16 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright::command::{
-    Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, printed, tables, wrapped,
-};
-use feedwright::{BEST, Choices, OutputFile, OutputFiles};
+use feedwright::command::{Console, ConsoleTable, TableColumn, find, printed, tables, wrapped};
+use feedwright::{BEST, Choices, OutputFiles};
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use super::never_worse::{checked, found};
 use crate::command::args::independent::IndependentArgs;
+use crate::command::sweep::{code, write_json};
 use crate::independent::{
-    DEFAULT_CONTROLLERS, IndependentError, IndependentOptions, IndependentResult, PROGRAMS,
+    DEFAULT_CONTROLLERS, IndependentCut, IndependentOptions, IndependentResult, PROGRAMS,
     independent,
 };
 use crate::independent_plant::linearization::LinearPart;
@@ -24,10 +23,9 @@ use crate::peers::CONTROLLERS;
 pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode> {
     checked(args.limit_s)?;
     let (machines, options) = (machines(args)?, options(args)?);
-    let files = if args.programs.is_empty() {
-        vec![]
-    } else {
-        found(&args.programs)?
+    let files = match &args.programs[..] {
+        [] => vec![],
+        places => found(places)?,
     };
     let inputs: Vec<&Path> = files
         .iter()
@@ -41,21 +39,13 @@ pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode>
         .map(|path| outputs.start(path))
         .transpose()?;
     let settings = args.reader.settings()?;
-    let programs = |sheet: &Machine| -> Result<Vec<SweepProgram>, IndependentError> {
-        let length = Length {
-            machine: sheet,
-            limit_s: args.limit_s,
-        };
-        let read: Result<Vec<SweepProgram>, _> = if files.is_empty() {
-            PROGRAMS
-                .iter()
-                .map(|(name, text)| SweepProgram::from_text(name, text, length))
-                .collect()
-        } else {
-            files
-                .iter()
-                .map(|file| SweepProgram::read(file, &settings, length))
-                .collect()
+    let programs = |sheet: &Machine| -> Result<Vec<SweepProgram>> {
+        let length = Length(sheet, args.limit_s);
+        let of_text = |(name, text): &(&str, &str)| SweepProgram::from_text(name, text, length);
+        let of_file = |file: &PathBuf| SweepProgram::read(file, &settings, length);
+        let read: Result<_, _> = match &files[..] {
+            [] => PROGRAMS.iter().map(of_text).collect(),
+            files => files.iter().map(of_file).collect(),
         };
         Ok(read?)
     };
@@ -63,28 +53,14 @@ pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode>
     let results = independent(&machines, programs, &options, &bar);
     bar.clear();
     let results = results?;
-    if let Some(mut file) = json {
-        serde_json::to_writer_pretty(&mut file, &results).into_diagnostic()?;
-        file.write_all(b"\n").into_diagnostic()?;
-        OutputFile::commit_all(vec![file], &bar)?;
+    if let Some(file) = json {
+        write_json(file, &results, console)?;
     }
     let out = &mut *tables([args.json.as_deref()]);
     let printing = results.iter().try_for_each(|result| print(result, out));
-    let is_worse = |result: &IndependentResult| {
-        result
-            .cuts
-            .iter()
-            .any(|cut| cut.row.controller == BEST && !cut.faults.is_empty())
-    };
-    let worse = results.iter().any(is_worse);
-    printed(
-        printing,
-        if worse {
-            ExitCode::from(OUT_OF_TOLERANCE)
-        } else {
-            ExitCode::SUCCESS
-        },
-    )
+    let mut cuts = results.iter().flat_map(|result| &result.cuts);
+    let is_worse = |cut: &IndependentCut| cut.row.controller == BEST && !cut.faults.is_empty();
+    printed(printing, code(cuts.any(is_worse)))
 }
 
 /// Returns the requested machines.
@@ -112,23 +88,20 @@ fn machines(args: &IndependentArgs) -> Result<Vec<IndependentMachine>> {
 
 /// Reads the options of the identification and the cuts.
 fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
-    let excitation = args.excitation.as_ref().map(|path| {
-        let text = std::fs::read_to_string(path).into_diagnostic();
-        text.map(|text| (path.display().to_string(), text))
-            .wrap_err_with(|| path.display().to_string())
-    });
-    let named = if args.controller.is_empty() {
-        DEFAULT_CONTROLLERS.to_vec()
-    } else {
-        args.controller.iter().map(String::as_str).collect()
+    let read = |path: &PathBuf| {
+        let (name, text) = (path.display().to_string(), std::fs::read_to_string(path));
+        Ok::<_, miette::Report>((name.clone(), text.into_diagnostic().wrap_err(name)?))
     };
+    let excitation = args.excitation.as_ref().map(read).transpose()?;
+    let named: Vec<&str> = match &args.controller[..] {
+        [] => DEFAULT_CONTROLLERS.to_vec(),
+        named => named.iter().map(String::as_str).collect(),
+    };
+    let controllers = named.into_iter().map(|name| find(name, CONTROLLERS));
     Ok(IndependentOptions {
-        excitation: excitation.transpose()?,
+        excitation,
         record_delay_s: (!args.open_delay).then_some(0.0),
-        controllers: named
-            .into_iter()
-            .map(|name| find(name, CONTROLLERS))
-            .collect::<Result<_>>()?,
+        controllers: controllers.collect::<Result<_>>()?,
         choices: Choices {
             seed: args.seed,
             ..Choices::default()
@@ -161,14 +134,11 @@ fn print(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()> {
         "delay ms",
         "lag ms",
     ];
-    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
+    let mut table = ConsoleTable::new(columns.map(TableColumn::new).into());
     for axis in &result.axes {
         let pair = |digits: usize, of: fn(&LinearPart) -> f64| {
-            format!(
-                "{:.digits$} / {:.digits$}",
-                of(&axis.found),
-                of(&axis.plant)
-            )
+            let [found, plant] = [&axis.found, &axis.plant].map(of);
+            format!("{found:.digits$} / {plant:.digits$}")
         };
         table.row(vec![
             axis.name.clone(),
@@ -203,16 +173,10 @@ fn print_cuts(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()>
         let [seen_before, seen_after] = cut.encoders_um;
         if program != cut.row.program {
             program = &cut.row.program;
-            let cells = [
-                &format!("{program}, uncorrected"),
-                &both(seen_before),
-                "",
-                &both(tool_before),
-                "",
-                "",
-                "",
-            ];
-            table.row(cells.map(str::to_owned).to_vec());
+            let mut cells = vec![String::new(); 7];
+            cells[0] = format!("{program}, uncorrected");
+            (cells[1], cells[3]) = (both(seen_before), both(tool_before));
+            table.row(cells);
         }
         let ratio = |before: f64, after: f64| format!("{:.3}", after / before.max(1e-3));
         let engaged = after

@@ -7,35 +7,23 @@ use std::sync::Arc;
 
 use feedwright::command::{Console, ConsoleTable, TableColumn, printed};
 use feedwright::{BEST, RESULTS_FORMAT};
-use feedwright_sim::Machine;
 use miette::{Result, miette};
 use serde::Serialize;
 
 use super::never_worse::{checked, found, read};
 use crate::command::args::mismatch::MismatchArgs;
-use crate::command::sweep::{Sweep, code};
-use crate::mismatch::table::{MismatchSummary, MismatchVerdict};
+use crate::command::sweep::{self, Sweep, code, loaded};
+use crate::mismatch::table::MismatchSummary;
 use crate::mismatch::{Variants, variants};
-use crate::never_worse::summary::Quantiles;
 use crate::never_worse::{SweepJob, jobs};
 
 /// A result with its format and version.
 #[derive(Serialize)]
-struct StampedResult<'a, T> {
+struct StampedResult {
     format: u32,
     version: &'static str,
     #[serde(flatten)]
-    result: &'a T,
-}
-
-impl<'a, T> StampedResult<'a, T> {
-    const fn of(result: &'a T) -> Self {
-        Self {
-            format: RESULTS_FORMAT,
-            version: env!("CARGO_PKG_VERSION"),
-            result,
-        }
-    }
+    result: MismatchSummary,
 }
 
 /// Machines whose models are tried where none is named.
@@ -43,19 +31,13 @@ const BASES: [&str; 4] = ["workshop", "stiff", "tnv40", "router"];
 
 pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
     checked(args.limit_s)?;
-    let bases: Vec<Machine> = if args.machine.is_empty() {
-        BASES
-            .iter()
-            .map(|name| Machine::load(name.as_ref()))
-            .collect::<Result<_, _>>()?
+    let bases = if args.machine.is_empty() {
+        loaded(BASES)?
     } else {
-        args.machine
-            .iter()
-            .map(|machine| Machine::load(machine))
-            .collect::<Result<_, _>>()?
+        loaded(&args.machine)?
     };
     let files = found(&args.programs)?;
-    let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
+    let machine_files: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
     let inputs: Vec<&Path> = files
         .iter()
         .chain(&machine_files)
@@ -63,7 +45,7 @@ pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
         .collect();
     let mut sweep = Sweep::new(&args.sweep, &args.controller, &inputs)?;
     sweep.options.recorded = true;
-    let names: Vec<&'static str> = sweep
+    let names: Vec<&str> = sweep
         .options
         .controllers
         .iter()
@@ -76,7 +58,7 @@ pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
             names[twice]
         ));
     }
-    let ours = names
+    let ours = *names
         .iter()
         .find(|name| **name == BEST)
         .unwrap_or(&names[0]);
@@ -85,38 +67,34 @@ pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
         drawn: args.drawn,
         seed: args.sweep.seed,
     };
+    let settings = args.reader.settings()?;
     let mut all = vec![];
     for base in &bases {
-        let programs = read(
-            &files,
-            &args.reader.settings()?,
-            base,
-            args.limit_s,
-            console,
-        )?;
-        let model = Arc::new(base.clone());
+        let programs = read(&files, &settings, base, args.limit_s, console)?;
+        let model = &Arc::new(base.clone());
+        let by_model = |job| SweepJob {
+            model: model.clone(),
+            ..job
+        };
         all.extend(
             jobs(programs, variants(base, which))
                 .into_iter()
-                .map(|job| SweepJob {
-                    model: model.clone(),
-                    ..job
-                }),
+                .map(by_model),
         );
     }
-    eprintln!(
-        "{} cuts by models of {} machines with {} controllers",
-        all.len(),
-        bases.len(),
-        names.len()
-    );
-    let mut done = sweep.run(&all, console)?;
-    let summary = MismatchSummary::of(std::mem::take(&mut done.rows), ours);
-    let mut out = sweep.write(&StampedResult::of(&summary), console)?;
-    let printing = done
-        .print(&summary.ours, &mut out)
-        .and_then(|()| print(&summary, &mut out));
-    printed(printing, code(summary.ours.worse))
+    let [cuts, machines, controllers] = [all.len(), bases.len(), names.len()];
+    eprintln!("{cuts} cuts by models of {machines} machines with {controllers} controllers");
+    let judge = |rows| StampedResult {
+        format: RESULTS_FORMAT,
+        version: env!("CARGO_PKG_VERSION"),
+        result: MismatchSummary::of(rows, ours),
+    };
+    let print = |StampedResult { result, .. }: &_, work: &str, out: &mut dyn Write| {
+        sweep::print(&result.ours, work, out)?;
+        print(result, out)
+    };
+    let (stamped, printing) = sweep.run(&all, console, judge, print)?;
+    printed(printing, code(stamped.result.ours.worse > 0))
 }
 
 /// A row for each machine and controller, and a line for each machine; the help explains the
@@ -132,43 +110,28 @@ fn print(summary: &MismatchSummary, out: &mut dyn Write) -> io::Result<()> {
         "out",
         "later",
     ];
-    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
+    let mut table = ConsoleTable::new(columns.map(TableColumn::new).into());
     let mut model = "";
     for group in &summary.groups {
         if model != group.model {
             model = &group.model;
             table.section(format!("by {model}"));
         }
-        let Quantiles {
-            cuts,
-            median,
-            p90,
-            largest,
-            ..
-        } = group.rms_ratio;
+        let it = group.rms_ratio;
         let later = group
             .later_ratio
             .map_or("-".to_owned(), |later| format!("{:.3}", later.median));
-        let ratios = [median, p90, largest].map(|ratio| format!("{ratio:.3}"));
+        let ratios = [it.median, it.p90, it.largest].map(|ratio| format!("{ratio:.3}"));
         let counts = [group.worse, group.lost].map(|count| count.to_string());
-        let name = [group.controller.clone(), cuts.to_string()];
+        let name = [group.controller.clone(), it.cuts.to_string()];
         table.row([&name[..], &ratios, &counts, &[later]].concat());
     }
     table.print(out)?;
-    for MismatchVerdict {
-        model,
-        ours,
-        median,
-        peer,
-        peer_median,
-        ratio,
-    } in &summary.verdicts
-    {
-        if let (Some(peer), Some(peer_median), Some(ratio)) = (peer, peer_median, ratio) {
-            writeln!(
-                out,
-                "{model}: best peer {peer} {peer_median:.3}, {ours} {median:.3}, which is {ratio:.2} of it"
-            )?;
+    for it in &summary.verdicts {
+        if let (Some(peer), Some(peer_median), Some(ratio)) = (&it.peer, it.peer_median, it.ratio) {
+            let best = format!("{}: best peer {peer} {peer_median:.3}", it.model);
+            let (ours, median) = (&it.ours, it.median);
+            writeln!(out, "{best}, {ours} {median:.3}, which is {ratio:.2} of it")?;
         }
     }
     Ok(())

@@ -10,7 +10,7 @@ use miette::{Result, miette};
 use rayon::prelude::*;
 
 use crate::command::args::never_worse::NeverWorseArgs;
-use crate::command::sweep::{Sweep, code};
+use crate::command::sweep::{Sweep, code, loaded, print};
 use crate::never_worse::program::{Length, SweepProgram};
 use crate::never_worse::summary::SweepSummary;
 use crate::never_worse::{SweepJob, jobs, machines, sample};
@@ -22,37 +22,31 @@ const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
 
 pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> {
     checked(args.limit_s)?;
-    let machines = machines_of(args)?;
+    let machines = if args.machine.is_empty() {
+        machines::machines()?
+    } else {
+        loaded(&args.machine)?
+    };
     let files = files(args)?;
-    let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
+    let machine_files: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
     let inputs: Vec<&Path> = files
         .iter()
         .chain(&machine_files)
         .map(PathBuf::as_path)
         .collect();
-    let sweep = Sweep::new(
-        &args.sweep,
-        std::slice::from_ref(&args.one.controller),
-        &inputs,
-    )?;
+    let controller = std::slice::from_ref(&args.one.controller);
+    let sweep = Sweep::new(&args.sweep, controller, &inputs)?;
     let pace = Machine::load(PACE.as_ref())?;
-    let programs = read(
-        &files,
-        &args.reader.settings()?,
-        &pace,
-        args.limit_s,
-        console,
-    )?;
+    let settings = args.reader.settings()?;
+    let programs = read(&files, &settings, &pace, args.limit_s, console)?;
     let jobs = jobs(programs, machines);
     let jobs = match args.sample {
         Some(count) => sample(jobs, count, args.sweep.seed),
         None => jobs,
     };
     announce(&jobs);
-    let mut done = sweep.run(&jobs, console)?;
-    let summary = SweepSummary::of(std::mem::take(&mut done.rows));
-    let mut out = sweep.write(&summary, console)?;
-    printed(done.print(&summary, &mut out), code(summary.worse))
+    let (summary, printing) = sweep.run(&jobs, console, SweepSummary::of, print)?;
+    printed(printing, code(summary.worse > 0))
 }
 
 /// A time of machining that can be cut, s.
@@ -65,17 +59,6 @@ pub(super) fn checked(limit_s: f64) -> Result<()> {
         help = help,
         "--limit-s is {limit_s} s; it must lie above 0 and up to {MAX_S} s"
     ))
-}
-
-fn machines_of(args: &NeverWorseArgs) -> Result<Vec<Machine>> {
-    if args.machine.is_empty() {
-        return Ok(machines::machines()?);
-    }
-    Ok(args
-        .machine
-        .iter()
-        .map(|machine| Machine::load(machine))
-        .collect::<Result<_, _>>()?)
 }
 
 /// The programs in these places.
@@ -101,10 +84,8 @@ fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
         return Ok(found);
     };
     let pattern = Pattern::new(only).map_err(|error| miette!("--only {only}: {error}"))?;
-    let files: Vec<PathBuf> = found
-        .into_iter()
-        .filter(|file| pattern.matches_path(file))
-        .collect();
+    let fits = |file: &PathBuf| pattern.matches_path(file);
+    let files: Vec<PathBuf> = found.into_iter().filter(fits).collect();
     if files.is_empty() {
         return Err(miette!(
             help = "the pattern is for the whole path: '*circle*'",
@@ -123,20 +104,14 @@ pub(super) fn read(
     limit_s: f64,
     console: &Console,
 ) -> Result<Vec<SweepProgram>> {
-    let length = Length {
-        machine: pace,
-        limit_s,
-    };
+    let length = Length(pace, limit_s);
     let bar = console.bar(0);
     bar.begin("reading the programs", files.len() as u64);
     let read = |file: &PathBuf| {
-        let program = if bar.is_cancelled() {
-            None
-        } else {
-            SweepProgram::read(file, settings, length).ok()
-        };
+        let is_cancelled = bar.is_cancelled();
+        let program = (!is_cancelled).then(|| SweepProgram::read(file, settings, length).ok());
         bar.advance(1);
-        program
+        program.flatten()
     };
     let programs: Vec<SweepProgram> = files.par_iter().filter_map(read).collect();
     bar.clear();
@@ -157,13 +132,10 @@ pub(super) fn read(
 fn announce(jobs: &[SweepJob]) {
     let hours = jobs.iter().map(|job| job.program.machining_s).sum::<f64>() / 3600.0;
     let shortened = jobs.iter().filter(|job| job.program.shortened).count();
-    let parts = if shortened > 0 {
-        format!("; {shortened} of them of the beginning of a program")
-    } else {
-        String::new()
+    let parts = match shortened {
+        0 => String::new(),
+        _ => format!("; {shortened} of them of the beginning of a program"),
     };
-    eprintln!(
-        "{} cuts, {hours:.1} h of machining on {PACE}{parts}",
-        jobs.len()
-    );
+    let cuts = jobs.len();
+    eprintln!("{cuts} cuts, {hours:.1} h of machining on {PACE}{parts}");
 }

@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, Result};
 use crate::command::args::paper::PaperArgs;
 use crate::paper::departures::{DepartureResult, Draw, departures, draws, quantile};
 use crate::paper::figures::figures;
-use crate::paper::{self, Paper};
+use crate::paper::{self, Numbers, Paper};
 
 pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
@@ -20,7 +20,7 @@ pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let bar = console.bar(0);
     let made = paper::experiment(&machine, &seeds, &bar)
         .and_then(|paper| Ok((paper, figures(&machine, seeds[0], &bar)?)));
-    let printed_rows = args
+    let rows = args
         .as_printed
         .then(|| departures(&machine, &seeds, &bar))
         .transpose();
@@ -29,121 +29,94 @@ pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
         .map(|count| draws(&machine, count, &bar))
         .transpose();
     bar.clear();
-    let (paper, figures) = made?;
-    let extra = Extra {
-        departures: printed_rows?,
-        draws: drawn?,
-    };
-    write(&args.out, &paper, &figures, &extra, &bar)?;
-    printed(
-        print(&args.out, &paper).and_then(|()| extra.print()),
-        ExitCode::SUCCESS,
-    )
-}
-
-/// Results requested in addition to the experiments.
-struct Extra {
-    departures: Option<Vec<DepartureResult>>,
-    draws: Option<Vec<Draw>>,
-}
-
-impl Extra {
-    /// Prints both as tables of Markdown.
-    fn print(&self) -> std::io::Result<()> {
-        let mut out = std::io::stdout().lock();
-        if let Some(rows) = &self.departures {
-            writeln!(
-                out,
-                "\n| Printed | Taken | Why | uncorrected | two-dimensional, mean | worst |"
-            )?;
-            writeln!(out, "|---|---|---|---|---|---|")?;
-            let escaped = |text: &str| text.replace('|', "\\|");
-            for DepartureResult {
-                printed,
-                taken,
-                reason,
-                uncorrected,
-                worst,
-                mean,
-            } in rows
-            {
-                let [printed, taken, reason] = [printed, taken, reason].map(|text| escaped(text));
-                let cell = |n: &paper::Numbers| {
-                    format!("{:.3} s, {:.1} / {:.1}", n.time_s, n.rms_um, n.max_um)
-                };
-                let cells = [uncorrected, mean, worst].map(cell).join(" | ");
-                writeln!(out, "| {printed} | {taken} | {reason} | {cells} |")?;
-            }
-        }
-        if let Some(draws) = &self.draws {
-            writeln!(
-                out,
-                "\n| Of {} draws | best | 5 % | 50 % | 95 % | worst |\n|---|--:|--:|--:|--:|--:|",
-                draws.len()
-            )?;
-            let row = |out: &mut std::io::StdoutLock<'_>, name: &str, of: fn(&Draw) -> f64| {
-                let cells = [0.0, 0.05, 0.5, 0.95, 1.0]
-                    .map(|part| format!("{:.3}", quantile(draws, of, part)));
-                writeln!(out, "| {name} | {} |", cells.join(" | "))
-            };
-            row(&mut out, "RMS ratio", |draw| draw.rms_ratio)?;
-            row(&mut out, "max ratio", |draw| draw.max_ratio)?;
-            row(&mut out, "time ratio", |draw| draw.time_ratio)?;
-        }
-        Ok(())
+    let ((paper, figures), rows, drawn) = (made?, rows?, drawn?);
+    write(&args.out, (&paper, &rows, &drawn), &figures, &bar)?;
+    let mut printing = print(&args.out, &paper);
+    if let Some(rows) = &rows {
+        printing = printing.and_then(|()| print_departures(rows));
     }
+    if let Some(drawn) = &drawn {
+        printing = printing.and_then(|()| print_draws(drawn));
+    }
+    printed(printing, ExitCode::SUCCESS)
+}
+
+/// Prints a table of Markdown.
+fn print_departures(rows: &[DepartureResult]) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let head = "| Printed | Taken | Why | uncorrected | two-dimensional, mean | worst |";
+    writeln!(out, "\n{head}\n|---|---|---|---|---|---|")?;
+    for row in rows {
+        let words = [&row.printed, &row.taken, &row.reason].map(|text| text.replace('|', "\\|"));
+        let cell = |n: &Numbers| format!("{:.3} s, {:.1} / {:.1}", n.time_s, n.rms_um, n.max_um);
+        let cells = [&row.uncorrected, &row.mean, &row.worst]
+            .map(cell)
+            .join(" | ");
+        writeln!(out, "| {} | {cells} |", words.join(" | "))?;
+    }
+    Ok(())
+}
+
+/// A ratio of a draw, by its name.
+type Ratio = (&'static str, fn(&Draw) -> f64);
+
+/// Prints a table of Markdown.
+fn print_draws(draws: &[Draw]) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let head = format!(
+        "| Of {} draws | best | 5 % | 50 % | 95 % | worst |",
+        draws.len()
+    );
+    writeln!(out, "\n{head}\n|---|--:|--:|--:|--:|--:|")?;
+    let ratios: [Ratio; 3] = [
+        ("RMS ratio", |draw| draw.rms_ratio),
+        ("max ratio", |draw| draw.max_ratio),
+        ("time ratio", |draw| draw.time_ratio),
+    ];
+    for (name, of) in ratios {
+        let parts = [0.0, 0.05, 0.5, 0.95, 1.0];
+        let cells = parts.map(|part| format!("{:.3}", quantile(draws, of, part)));
+        writeln!(out, "| {name} | {} |", cells.join(" | "))?;
+    }
+    Ok(())
 }
 
 /// Writes everything, and moves it to its place only when all is written.
 fn write(
     folder: &Path,
-    paper: &Paper,
+    (paper, rows, drawn): (&Paper, &Option<Vec<DepartureResult>>, &Option<Vec<Draw>>),
     figures: &[CaptionedFigure],
-    extra: &Extra,
     watch: &dyn Watch,
 ) -> Result<()> {
+    fn json(value: &impl serde::Serialize) -> Result<String> {
+        Ok(serde_json::to_string_pretty(value).into_diagnostic()? + "\n")
+    }
+    let mut texts = vec![("paper.json".to_owned(), json(paper)?)];
+    if let Some(rows) = rows {
+        texts.push(("departures.json".to_owned(), json(rows)?));
+    }
+    if let Some(drawn) = drawn {
+        texts.push(("draws.json".to_owned(), json(drawn)?));
+    }
+    for CaptionedFigure { number, figure, .. } in figures {
+        let name = number.to_lowercase().replace(' ', "_") + ".svg";
+        texts.push((name, figure.to_svg()));
+    }
     let (mut files, mut complete) = (OutputFiles::default(), Vec::new());
-    let mut start =
-        |name: &str, write: &dyn Fn(&mut OutputFile) -> std::io::Result<()>| -> Result<()> {
-            let mut file = files.start(&folder.join(name))?;
-            write(&mut file).into_diagnostic()?;
-            complete.push(file);
-            Ok(())
-        };
-    fn json(file: &mut OutputFile, value: &impl serde::Serialize) -> std::io::Result<()> {
-        serde_json::to_writer_pretty(&mut *file, value)?;
-        file.write_all(b"\n")
+    for (name, text) in texts {
+        let mut file = files.start(&folder.join(name))?;
+        file.write_all(text.as_bytes()).into_diagnostic()?;
+        complete.push(file);
     }
-    start("paper.json", &|file| json(file, paper))?;
-    if let Some(rows) = &extra.departures {
-        start("departures.json", &|file| json(file, rows))?;
-    }
-    if let Some(draws) = &extra.draws {
-        start("draws.json", &|file| json(file, draws))?;
-    }
-    for figure in figures {
-        let name = figure.number.to_lowercase().replace(' ', "_") + ".svg";
-        start(&name, &|file| {
-            file.write_all(figure.figure.to_svg().as_bytes())
-        })?;
-    }
-    OutputFile::commit_all(complete, watch)?;
-    Ok(())
+    Ok(OutputFile::commit_all(complete, watch)?)
 }
 
 fn print(folder: &Path, paper: &Paper) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(
-        out,
-        "{:>4} {:>24} {:>24} {:>24}",
-        "", "uncorrected", "magnitude only", "two-dimensional"
-    )?;
-    writeln!(
-        out,
-        "{:>4}{}",
-        "seed",
-        format!("  {:>8} {:>7} {:>7}", "time s", "RMS um", "max um").repeat(3)
-    )?;
+    let [open, magnitude, both] = ["uncorrected", "magnitude only", "two-dimensional"];
+    writeln!(out, "{:>4} {open:>24} {magnitude:>24} {both:>24}", "")?;
+    let columns = format!("  {:>8} {:>7} {:>7}", "time s", "RMS um", "max um");
+    writeln!(out, "{:>4}{}", "seed", columns.repeat(3))?;
     for seed in &paper.seeds {
         write!(out, "{:>4}", seed.seed)?;
         for cut in [seed.uncorrected, seed.magnitude_only, seed.two_dimensional] {

@@ -85,10 +85,8 @@ fn with_drive(mut variant: Variant, axes: &[Axis], random: &mut Random) -> Varia
 
 fn with_friction(mut variant: Variant, axes: &[Axis], random: &mut Random) -> Variant {
     let [slides, sticks] = [random.one_in(4), random.one_in(4)].map(|is_absent| !is_absent);
-    let (stribeck_mm_s, presliding_um) = (
-        random.by_ratio(STRIBECK_MM_S),
-        random.by_ratio(PRESLIDING_UM),
-    );
+    let stribeck_mm_s = random.by_ratio(STRIBECK_MM_S);
+    let presliding_um = random.by_ratio(PRESLIDING_UM);
     for (table, axis) in AXES.into_iter().zip(axes) {
         let of_coulomb = |part: f64| rounded(part * axis.coulomb_friction_nm, 3);
         let (stribeck, asymmetry) = (random.between(STRIBECK), random.between(ASYMMETRY));
@@ -99,43 +97,31 @@ fn with_friction(mut variant: Variant, axes: &[Axis], random: &mut Random) -> Va
                 .with(table, "stribeck_mm_s", stribeck_mm_s);
         }
     }
-    if sticks {
-        variant.with_axes("presliding_um", presliding_um)
-    } else {
-        variant
+    match sticks {
+        true => variant.with_axes("presliding_um", presliding_um),
+        false => variant,
     }
 }
 
 fn with_motor_and_noise(mut variant: Variant, axes: &[Axis], random: &mut Random) -> Variant {
     let [cogging_per_rev, ripple_per_rev] = PER_REV[usize::from(random.one_in(3))];
-    let (cogging, ripple, noise) = (
-        random.by_ratio(COGGING),
-        random.by_ratio(RIPPLE),
-        random.by_ratio(TORQUE_NOISE),
-    );
+    let [cogging, ripple, noise] =
+        [COGGING, RIPPLE, TORQUE_NOISE].map(|range| random.by_ratio(range));
     let [cogs, ripples, is_noisy] = [2, 2, 3].map(|one_in| !random.one_in(one_in));
     for (table, axis) in AXES.into_iter().zip(axes) {
         if cogs {
             let cogging_nm = rounded(cogging * axis.coulomb_friction_nm, 3);
-            variant = variant.with(table, "cogging_nm", cogging_nm).with(
-                table,
-                "cogging_per_rev",
-                cogging_per_rev,
-            );
+            variant = variant.with(table, "cogging_nm", cogging_nm);
+            variant = variant.with(table, "cogging_per_rev", cogging_per_rev);
         }
         if ripples {
-            variant =
-                variant
-                    .with(table, "ripple", ripple)
-                    .with(table, "ripple_per_rev", ripple_per_rev);
+            variant = variant.with(table, "ripple", ripple);
+            variant = variant.with(table, "ripple_per_rev", ripple_per_rev);
         }
         if is_noisy {
             let noise_nm = rounded(noise * axis.disturbance_nm, 3);
-            variant = variant.with(table, "torque_noise_nm", noise_nm).with(
-                table,
-                "torque_noise_s",
-                TORQUE_NOISE_S,
-            );
+            variant = variant.with(table, "torque_noise_nm", noise_nm);
+            variant = variant.with(table, "torque_noise_s", TORQUE_NOISE_S);
         }
     }
     let (encoder_um, wander) = (random.by_ratio(ENCODER_NOISE_UM), random.by_ratio(WANDER));
@@ -153,20 +139,16 @@ fn with_screw(variant: Variant, random: &mut Random) -> Variant {
         return variant;
     }
     let (share, damping) = (random.by_ratio(TABLE_SHARE), random.by_ratio(DAMPING));
-    let backlash_um = if random.one_in(2) {
-        0.0
-    } else {
-        random.by_ratio(BACKLASH_UM)
+    let backlash_um = match random.one_in(2) {
+        true => 0.0,
+        false => random.by_ratio(BACKLASH_UM),
     };
     let resonance_hz = random.by_ratio(RESONANCE_HZ);
     let screw = |variant: Variant, table| {
-        let variant =
-            variant
-                .with(table, "table_share", share)
-                .with(table, "resonance_hz", resonance_hz);
-        variant
-            .with(table, "damping_ratio", damping)
-            .with(table, "backlash_um", backlash_um)
+        let variant = variant.with(table, "table_share", share);
+        let variant = variant.with(table, "resonance_hz", resonance_hz);
+        let variant = variant.with(table, "damping_ratio", damping);
+        variant.with(table, "backlash_um", backlash_um)
     };
     SCREWS.into_iter().fold(variant, screw)
 }

@@ -5,6 +5,7 @@ use feedwright_sim::{BUILT_IN_MACHINES, Machine};
 use miette::{Result, miette};
 
 use crate::command::args::compare::{CompareArgs, TuningSource, Work};
+use crate::command::sweep::loaded;
 use crate::compare::held_out_work::HeldOutSeeds;
 use crate::compare::{ComparisonOptions, Tuning, Workpiece, recorded};
 use crate::peers::CONTROLLERS;
@@ -15,28 +16,17 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
         Work::Development => Workpiece::development(),
         Work::HeldOut => HeldOutSeeds::recorded().workpieces(),
     };
-    let mut machines: Vec<Machine> = BUILT_IN_MACHINES
-        .iter()
-        .map(|(name, _)| Machine::load(name.as_ref()))
-        .collect::<Result<_, _>>()?;
+    let mut machines = loaded(BUILT_IN_MACHINES.iter().map(|(name, _)| name))?;
     let mut controllers: Vec<&'static Entry> = CONTROLLERS.iter().collect();
     let nominal = machines[0].clone();
-    let added: Vec<Machine> = args
-        .machine
-        .iter()
-        .map(|machine| Machine::load(machine))
-        .collect::<Result<_, _>>()?;
-    check_only(
-        &args.only,
-        &workpieces,
-        &[&machines[..], &added[..]].concat(),
-        &controllers,
-    )?;
+    let added = loaded(&args.machine)?;
+    let all_machines = [&machines[..], &added[..]].concat();
+    check_only(&args.only, &workpieces, &all_machines, &controllers)?;
     let named = |name: &str| args.only.iter().any(|only| only == name);
     if workpieces.iter().any(|w| named(&w.name)) || !args.part.is_empty() && !args.only.is_empty() {
         workpieces.retain(|w| named(&w.name));
     }
-    if machines.iter().chain(&added).any(|m| named(&m.name)) {
+    if all_machines.iter().any(|m| named(&m.name)) {
         machines.retain(|m| named(&m.name));
     }
     if controllers.iter().any(|c| named(c.name)) {
@@ -60,21 +50,18 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
     }
     let set = feedwright::command::settings(&args.set, CONTROLLERS, None, &controllers)?;
     let tuning = match args.tuning() {
-        TuningSource::Recorded => Tuning::Known(recorded::known(
-            &machines_and(&machines, &nominal),
-            args.seed,
-        )),
+        TuningSource::Recorded => {
+            let all = [&machines[..], std::slice::from_ref(&nominal)].concat();
+            Tuning::Known(recorded::known(&all, args.seed))
+        }
         TuningSource::Search => Tuning::Search,
         TuningSource::Defaults => Tuning::Defaults,
     };
-    let machines = machines
-        .iter()
-        .map(|machine| args.geometry.on(machine))
-        .collect::<Result<_>>()?;
+    let compensated = machines.iter().map(|machine| args.geometry.on(machine));
     Ok(ComparisonOptions {
+        machines: compensated.collect::<Result<_>>()?,
         workpieces,
         nominal,
-        machines,
         controllers,
         knowledge: args.knowledge.iter().map(|&given| given.into()).collect(),
         seed: args.seed,
@@ -83,10 +70,6 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
         set,
         at_tolerance: args.at_tolerance,
     })
-}
-
-fn machines_and(machines: &[Machine], nominal: &Machine) -> Vec<Machine> {
-    machines.iter().chain([nominal]).cloned().collect()
 }
 
 /// Fails if a name in `--only` is unknown.

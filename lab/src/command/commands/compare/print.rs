@@ -1,6 +1,5 @@
 //! A comparison as text.
 
-use std::fmt::Write as _;
 use std::io::Write;
 
 use feedwright::command::{ConsoleTable, TableColumn, tables, tell_written, wrapped};
@@ -25,41 +24,40 @@ pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Res
 
 /// Returns the results of the searches as text.
 pub(super) fn tuned(tuned: &[Tuned]) -> String {
-    let mut text = String::new();
-    for tuned in tuned.iter().filter(|tuned| tuned.cuts > 0) {
-        let Tuned {
-            machine,
-            controller,
-            cuts,
-            rms_um,
-            open_um,
-            ..
-        } = tuned;
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "tuned {controller} on {machine}: {} ({cuts} evaluations, {rms_um:.3} um where the uncorrected cut has {open_um:.3})",
-            tuned.words()
-        );
-    }
-    text
+    let line = |it: &Tuned| {
+        format!(
+            "tuned {} on {}: {} ({} evaluations, {:.3} um where the uncorrected cut has {:.3})\n",
+            it.controller,
+            it.machine,
+            it.words(),
+            it.cuts,
+            it.rms_um,
+            it.open_um
+        )
+    };
+    tuned
+        .iter()
+        .filter(|tuned| tuned.cuts > 0)
+        .map(line)
+        .collect()
 }
 
 fn rows(rows: &[ComparisonRow]) -> ConsoleTable {
+    let optional = TableColumn::optional;
     let mut table = ConsoleTable::new(vec![
         TableColumn::new(""),
-        TableColumn::optional("time s", 5),
+        optional("time s", 5),
         TableColumn::new("RMS um"),
-        TableColumn::optional("lowest to highest", 9),
-        TableColumn::optional("encoders um", 6),
+        optional("lowest to highest", 9),
+        optional("encoders um", 6),
         TableColumn::new("max um"),
-        TableColumn::optional("uncut um", 1),
-        TableColumn::optional("time", 2),
-        TableColumn::optional("RMS", 3),
-        TableColumn::optional("max", 4),
-        TableColumn::optional("off um", 7),
-        TableColumn::optional("m/s2", 8),
-        TableColumn::optional("N m", 8),
+        optional("uncut um", 1),
+        optional("time", 2),
+        optional("RMS", 3),
+        optional("max", 4),
+        optional("off um", 7),
+        optional("m/s2", 8),
+        optional("N m", 8),
     ]);
     let mut heading = String::new();
     for row in rows {
@@ -69,15 +67,12 @@ fn rows(rows: &[ComparisonRow]) -> ConsoleTable {
             heading = here;
         }
         let [low, high] = row.rms_spread_um;
+        let spread = (row.seeds > 1).then(|| format!("{low:.3} to {high:.3}"));
         table.row(vec![
             row.controller.clone(),
             format!("{:.3}", row.time_s),
             format!("{:.3}", row.rms_um),
-            if row.seeds > 1 {
-                format!("{low:.3} to {high:.3}")
-            } else {
-                String::new()
-            },
+            spread.unwrap_or_default(),
             row.joint_rms_um
                 .map_or(String::new(), |um| format!("{um:.3}")),
             format!("{:.2}", row.max_um),
@@ -90,7 +85,7 @@ fn rows(rows: &[ComparisonRow]) -> ConsoleTable {
             format!("{:.2}", row.peak_torque_nm),
         ]);
         if let Some(note) = row.note() {
-            table.remark(note.to_string());
+            table.remark(note);
         }
     }
     table
@@ -100,27 +95,23 @@ fn print_at_tolerance(out: &mut dyn Write, rows: &[AtTolerance]) -> std::io::Res
     if rows.is_empty() {
         return Ok(());
     }
-    let mut table = ConsoleTable::new(vec![
-        TableColumn::new(""),
-        TableColumn::new("feed mm/s"),
-        TableColumn::new("time s"),
-        TableColumn::new("time"),
-    ]);
-    let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+    let headings = ["", "feed mm/s", "time s", "time"];
+    let mut table = ConsoleTable::new(headings.map(TableColumn::new).into());
+    let number = |value: Option<f64>, digits: usize| {
+        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+    };
     let mut contour = "";
     for row in rows {
         if row.contour != contour {
             table.section(format!("{}, max {TOLERANCE_UM} um", row.contour));
             contour = &row.contour;
         }
-        let feed = row
-            .feed_mm_s
-            .map_or("-".to_owned(), |feed| format!("{feed:.1}"));
+        let [time_s, ratio] = [row.time_s, row.time_ratio].map(|value| number(value, 3));
         table.row(vec![
             row.controller.clone(),
-            feed,
-            number(row.time_s),
-            number(row.time_ratio),
+            number(row.feed_mm_s, 1),
+            time_s,
+            ratio,
         ]);
     }
     table.print(out)
@@ -131,33 +122,22 @@ fn print_verdicts(out: &mut dyn Write, verdicts: &[Verdict]) -> std::io::Result<
         return Ok(());
     }
     writeln!(out)?;
-    for verdict in verdicts {
-        let Verdict {
-            claim,
-            contour,
-            machine,
-            value,
-            limit,
-            unit,
-            against,
-            ..
-        } = verdict;
-        let against = if against.is_empty() {
-            String::new()
-        } else {
-            format!(" ({against})")
+    for it in verdicts {
+        let against = match &it.against[..] {
+            "" => String::new(),
+            against => format!(" ({against})"),
         };
-        let holds = if verdict.holds {
-            "holds"
-        } else {
-            "FALLS SHORT"
-        };
-        let place = [contour.to_string(), machine.to_string()]
-            .into_iter()
-            .filter(|word| !word.is_empty());
-        let place = place.collect::<Vec<_>>().join(" on ");
-        let text =
-            format!("{holds}: {claim}; {place}: {value:.3}, limit {limit:.3} {unit}{against}");
+        let holds = if it.holds { "holds" } else { "FALLS SHORT" };
+        let mut place = vec![it.contour.as_str(), &it.machine];
+        place.retain(|word| !word.is_empty());
+        let text = format!(
+            "{holds}: {}; {}: {:.3}, limit {:.3} {}{against}",
+            it.claim,
+            place.join(" on "),
+            it.value,
+            it.limit,
+            it.unit
+        );
         writeln!(out, "{}", wrapped(&text, 2))?;
     }
     let held = verdicts.iter().filter(|verdict| verdict.holds).count();

@@ -1,5 +1,6 @@
-//! Finished work of a study, in the store of results that `feedwright sweep` writes: an interrupted
-//! study continues where it stopped.
+//! What every study shares: its items are done on several threads, and its finished work is kept in
+//! the store of results that `feedwright sweep` writes, so that an interrupted study continues where
+//! it stopped.
 //!
 //! A result is stored under the hash of everything that it follows from: the executable, what the
 //! whole study depends on, and the key of the work. Several processes may work on one folder. A
@@ -7,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use feedwright::command::make_folder;
 use feedwright::{Store, cache_folder, key_of};
@@ -14,8 +16,38 @@ use miette::Result;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+/// Does the items on a number of threads, each with a worker of its own. The results have the order
+/// of the items.
+///
+/// # Errors
+/// The first error of an item; no other item is begun then.
+pub(crate) fn each<I: Sync, W, R: Send, E: Send>(
+    items: &[I],
+    threads: usize,
+    worker: impl Fn() -> W + Sync,
+    work: impl Fn(&mut W, &I) -> Result<R, E> + Sync,
+) -> Result<Vec<R>, E> {
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new((0..items.len()).map(|_| None).collect::<Vec<_>>());
+    let thread = || {
+        let mut worker = worker();
+        loop {
+            let item = next.fetch_add(1, Ordering::Relaxed);
+            let Some(input) = items.get(item) else { break };
+            let result = work(&mut worker, input);
+            if result.is_err() {
+                next.store(items.len(), Ordering::Relaxed);
+            }
+            results.lock().unwrap_or_else(PoisonError::into_inner)[item] = Some(result);
+        }
+    };
+    std::thread::scope(|scope| (0..threads.max(1)).for_each(|_| drop(scope.spawn(thread))));
+    let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    results.into_iter().flatten().collect()
+}
+
 /// Finished work of one study.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Kept {
     store: Option<Store>,
     /// Hash of everything that all work of the study depends on.
@@ -27,13 +59,8 @@ pub struct Kept {
 
 impl Kept {
     /// Keeps nothing.
-    pub const fn none() -> Self {
-        Self {
-            store: None,
-            common: String::new(),
-            removed: None,
-            found: AtomicUsize::new(0),
-        }
+    pub fn none() -> Self {
+        Self::default()
     }
 
     /// Keeps work in `folder`, or in a folder of the cache that [`Self::complete`] removes. `study`
@@ -42,29 +69,23 @@ impl Kept {
     /// # Errors
     /// A named folder that cannot be made.
     pub fn open(folder: Option<&Path>, study: &str) -> Result<Self> {
-        let program = std::env::current_exe()
-            .and_then(std::fs::read)
-            .unwrap_or_default();
-        let common = key_of(&[&program, study.as_bytes()]);
-        let removed = if folder.is_some() {
-            None
-        } else {
-            cache_folder().map(|cache| cache.join(format!("lab-{common}")))
-        };
+        let program = std::env::current_exe().and_then(std::fs::read);
+        let common = key_of(&[&program.unwrap_or_default(), study.as_bytes()]);
+        let cached = || Some(cache_folder()?.join(format!("lab-{common}")));
+        let removed = if folder.is_some() { None } else { cached() };
         let store = match (folder, &removed) {
             (Some(folder), _) => {
                 make_folder(folder)?;
                 Some(Store::new(folder.to_owned()))
             }
             // Without a place in the cache, an interrupted study begins anew.
-            (None, Some(folder)) => Some(Store::new(folder.clone())),
-            (None, None) => None,
+            (None, cached) => cached.clone().map(Store::new),
         };
         Ok(Self {
             store,
             common,
             removed,
-            found: AtomicUsize::new(0),
+            ..Self::default()
         })
     }
 

@@ -1,5 +1,5 @@
 //! Results of corrected programs that learn from logs of the parts that were cut:
-//! `cargo run --release -p feedwright-lab --example learned_programs [OPTION...] [SEED [COUNT]]`.
+//! `cargo run --release -p feedwright-lab --example corrected_programs -- --learned [OPTION...] [SEED [COUNT]]`.
 //!
 //! The machine that cuts is one of [`MACHINES`], with disturbance, noise and encoder steps. Its
 //! geometry has no errors: all errors are those that encoders see. In the machine file, position
@@ -25,18 +25,20 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use feedwright::{
-    CorrectJob, CorrectOutcome, ExportedCut, MeasuredLog, PredictedCut, TARGETS, deterministic,
-};
+use feedwright::{CorrectJob, CorrectOutcome, MeasuredLog, PredictedCut, TARGETS, deterministic};
 use feedwright_control::Uncorrected;
+use feedwright_gcode::Program;
 use feedwright_gcode::canon::{Event, EventKind};
-use feedwright_gcode::{Program, Reader, Settings};
 use feedwright_ident::{Columns, Log};
-use feedwright_plan::{Pieces, Step};
-use feedwright_sim::{Axis, Machine, Measurement, Mechanism, Plant, Run, Squareness};
+use feedwright_plan::Step;
+use feedwright_sim::{Axis, Machine, Measurement, Mechanism, Plant, Run};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
+
+use crate::{CUTS, exported, seen_by_encoders, steps};
+
+type Failure = Box<dyn Error + Send + Sync>;
 
 /// Machines, in turn.
 const MACHINES: [&str; 4] = ["tnv40", "stiff", "workshop", "heavy"];
@@ -45,25 +47,22 @@ const COUNT: usize = 16;
 const OFF: f64 = 0.2;
 /// Programs.
 const PARTS: [&str; 4] = ["circle", "star", "eight", "square"];
-/// Cuts of each program.
-const CUTS: u64 = 8;
 
 /// Rows of a log: command, and position by the encoders at the same time.
-type Rows = Vec<[[f64; 3]; 2]>;
+type Rows = Arc<Mutex<Vec<[[f64; 3]; 2]>>>;
 
 /// A machine that is logged.
 struct Logged {
     plant: Plant<3>,
-    seen_mm: [f64; 3],
-    rows: Arc<Mutex<Rows>>,
+    last_mm: [[f64; 3]; 2],
+    rows: Rows,
 }
 
 impl Logged {
-    fn log(&self, command_mm: [f64; 3]) {
-        self.rows
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .push([command_mm, self.seen_mm]);
+    fn log(&mut self, command_mm: [f64; 3]) {
+        self.last_mm[0] = command_mm;
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        rows.push(self.last_mm);
     }
 }
 
@@ -71,40 +70,18 @@ impl Mechanism for Logged {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
         self.log(command_mm);
         let measurement = self.plant.step(command_mm);
-        self.seen_mm = measurement.measured_mm;
+        self.last_mm[1] = measurement.measured_mm;
         measurement
     }
 
     fn skip(&mut self, periods: u64) {
-        let last = self
-            .rows
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .last()
-            .copied();
-        (0..periods).for_each(|_| self.log(last.unwrap_or_default()[0]));
+        (0..periods).for_each(|_| self.log(self.last_mm[0]));
         self.plant.skip(periods);
     }
 
     fn has_geometry(&self) -> bool {
         false
     }
-}
-
-/// The machine as a file has it, without geometry.
-fn file(name: &str) -> Result<Machine, Box<dyn Error>> {
-    let machine = Machine::load(name.as_ref())?;
-    let axis = |axis: &Axis| Axis {
-        scale_um_m: 0.0,
-        pitch_error_um: 0.0,
-        ..*axis
-    };
-    let axes = machine.axes.iter().map(axis).collect();
-    Ok(Machine {
-        axes,
-        geometry: Squareness::default(),
-        ..machine
-    })
 }
 
 /// A machine that is not as its file.
@@ -177,13 +154,6 @@ enum Off {
     Mistyped,
 }
 
-fn steps(text: &str) -> Vec<Step> {
-    let reader = Reader::from_text("part.ngc", text, Settings::default()).expect("a program");
-    Pieces::new(reader.map_while(Result::ok))
-        .map_while(Result::ok)
-        .collect()
-}
-
 /// Rest before a cut, s, so that the disturbance has the phase of that number.
 fn wait_s(machine: &Machine, number: u64) -> f64 {
     0.2 + number as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0)
@@ -195,50 +165,39 @@ fn log(
     program: &[Step],
     number: u64,
     folder: &Path,
-) -> Result<MeasuredLog, Box<dyn Error + Send + Sync>> {
+) -> Result<MeasuredLog, Failure> {
     let machine = machine.with_noise_seed(7000 + number);
+    let seconds = wait_s(&machine, number);
     let wait = Event {
         line: 0,
-        kind: EventKind::Dwell {
-            seconds: wait_s(&machine, number),
-        },
+        kind: EventKind::Dwell { seconds },
     };
-    let program: Vec<Step> = std::iter::once(Step::Event(wait))
-        .chain(program.iter().cloned())
-        .collect();
-    let rows = Arc::new(Mutex::new(Vec::new()));
+    let program = [&[Step::Event(wait)], program].concat();
+    let rows = Rows::default();
     let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
         Box::new(Logged {
             plant: Plant::with_seed(&machine, start_mm, seed),
-            seen_mm: start_mm,
+            last_mm: [[0.0; 3], start_mm],
             rows: Arc::clone(&rows),
         })
     };
+    let stages = TARGETS[0].stages(&machine);
     let run = Run::on(&machine)
         .uncompensated()
-        .stages(TARGETS[0].stages(&machine))
+        .stages(stages)
         .plant(&plant);
     run.cut_steps::<2>(&program, &mut Uncorrected, &mut [])?;
     let mut text = "t_s,x_cmd_mm,x_act_mm,y_cmd_mm,y_act_mm\n".to_owned();
-    for (k, [command, seen]) in rows
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .iter()
-        .enumerate()
-    {
+    let rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
+    for (k, [[cx, cy, _], [x, y, _]]) in rows.iter().enumerate() {
         let t_s = k as f64 * machine.period.servo_s;
-        writeln!(
-            text,
-            "{t_s:.6},{:.6},{:.6},{:.6},{:.6}",
-            command[0], seen[0], command[1], seen[1]
-        )?;
+        writeln!(text, "{t_s:.6},{cx:.6},{x:.6},{cy:.6},{y:.6}")?;
     }
-    let path = folder.join(format!("cut{number}.csv"));
+    let name = format!("cut{number}.csv");
+    let path = folder.join(&name);
     std::fs::write(&path, text)?;
-    Ok(MeasuredLog {
-        name: format!("cut{number}.csv"),
-        log: Log::read(&path, &Columns::default())?,
-    })
+    let log = Log::read(&path, &Columns::default())?;
+    Ok(MeasuredLog { name, log })
 }
 
 /// Errors of a program: mean RMS and largest, um; the part of them that no program removes; and the
@@ -255,15 +214,7 @@ struct Errors {
 
 fn errors(machine: &Machine, original: &[Step], program: &[Step]) -> Errors {
     let once = |machine: &Machine, number: u64| {
-        let stages = TARGETS[0].stages(machine);
-        let cut = ExportedCut {
-            machine,
-            error: None,
-            stages,
-            original,
-            axes: 2,
-            watch: &(),
-        };
+        let cut = exported(machine, original, 2);
         cut.once(program, wait_s(machine, number), &mut [])
             .expect("a cut")
     };
@@ -277,7 +228,7 @@ fn errors(machine: &Machine, original: &[Step], program: &[Step]) -> Errors {
     }
     let quiet = once(&deterministic(machine), 0);
     let nobody_um = [
-        (rms_um.powi(2) - quiet.rms_um.powi(2)).max(0.0).sqrt(),
+        without(rms_um, quiet.rms_um),
         (max_um - quiet.max_um).max(0.0),
     ];
     Errors {
@@ -289,23 +240,30 @@ fn errors(machine: &Machine, original: &[Step], program: &[Step]) -> Errors {
     }
 }
 
+/// The rest of an RMS where a part of it is taken out.
+fn without(rms_um: f64, part_um: f64) -> f64 {
+    (rms_um.powi(2) - part_um.powi(2)).max(0.0).sqrt()
+}
+
 /// Ratios of RMS and largest error, as in `corrected_programs`.
 fn ratios(was: &Errors, is: &Errors) -> [f64; 2] {
     let [nobody_rms, nobody_max] = is.nobody_um;
-    let rms = |rms_um: f64| (rms_um.powi(2) - nobody_rms.powi(2)).max(0.0).sqrt();
     let max = |max_um: f64| (max_um - nobody_max).max(0.0);
     [
-        rms(is.rms_um) / rms(was.rms_um).max(1e-9),
+        without(is.rms_um, nobody_rms) / without(was.rms_um, nobody_rms).max(1e-9),
         max(is.max_um) / max(was.max_um).max(1e-9),
     ]
 }
+
+/// Errors of a corrected program, the prediction, and why it was not written.
+type Way = (Errors, Option<PredictedCut>, Option<String>);
 
 /// A row of the table.
 struct Case {
     name: String,
     was: Errors,
-    /// Results with the right file, without a log, with one and with two, and the predictions.
-    ways: Vec<(Errors, Option<PredictedCut>, Option<String>)>,
+    /// Results with the right file, without a log, with one and with two.
+    ways: Vec<Way>,
 }
 
 fn case(
@@ -314,9 +272,9 @@ fn case(
     seed: u64,
     off: Off,
     [logs, exact]: [bool; 2],
-) -> Result<Case, Box<dyn Error + Send + Sync>> {
+) -> Result<Case, Failure> {
     let name = MACHINES[number % MACHINES.len()];
-    let built_in = file(name).map_err(|error| error.to_string())?;
+    let built_in = seen_by_encoders(&Machine::load(name.as_ref())?);
     let seed = seed.wrapping_add(number as u64);
     let other = drawn(&built_in, seed);
     let (file, machine) = match off {
@@ -324,77 +282,70 @@ fn case(
         Off::Mistyped => (mistyped(&built_in, seed), built_in),
         Off::Unknown => (other, with_unknown(&built_in)),
     };
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"))
-        .join(part)
-        .with_extension("ngc");
-    let original = steps(&std::fs::read_to_string(&path)?);
+    let parts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"));
+    let path = parts.join(part).with_extension("ngc");
+    let read = |text: &str| steps(text, None);
+    let original = read(&std::fs::read_to_string(&path)?);
     let folder = tempfile::tempdir()?;
-    let by = |file: &Machine, logs: Vec<MeasuredLog>| -> Result<CorrectOutcome, String> {
+    // Replaces the program where another one is written.
+    let way = |file: &Machine, logs: Vec<MeasuredLog>, program: &mut Vec<Step>| -> Way {
         let mut job = CorrectJob::new(Program::in_file(&path), file.clone(), &TARGETS[0]);
         job.logs = logs;
         if exact {
             job.file_error = 0.0;
         }
-        job.run(&()).map_err(|error| error.to_string())
-    };
-    let mut program = original.clone();
-    let was = errors(&machine, &original, &original);
-    let corrected = |logs: Vec<MeasuredLog>| by(&file, logs);
-    let way = |outcome: Result<CorrectOutcome, String>, program: &mut Vec<Step>| {
-        let (predicted, refusal) = match outcome {
+        let (predicted, refusal) = match job.run(&()) {
             Ok(outcome) => {
                 if let Some(text) = outcome.program() {
-                    *program = steps(text);
+                    *program = read(text);
                 }
-                (
-                    outcome.learned.and_then(|learned| learned.predicted),
-                    outcome.refusal,
-                )
+                let CorrectOutcome {
+                    learned, refusal, ..
+                } = outcome;
+                (learned.and_then(|learned| learned.predicted), refusal)
             }
-            Err(error) => (None, Some(error)),
+            Err(error) => (None, Some(error.to_string())),
         };
         (errors(&machine, &original, program), predicted, refusal)
     };
-    let right = way(by(&machine, Vec::new()), &mut original.clone());
-    let without = way(corrected(Vec::new()), &mut original.clone());
-    if !logs {
-        return Ok(Case {
-            name: format!("{name}-{number} {part}"),
-            was,
-            ways: vec![right, without],
-        });
+    let mut program = original.clone();
+    let was = errors(&machine, &original, &original);
+    let right = way(&machine, Vec::new(), &mut original.clone());
+    let mut ways = vec![right, way(&file, Vec::new(), &mut original.clone())];
+    if logs {
+        let first = log(&machine, &original, 1, folder.path())?;
+        ways.push(way(&file, vec![first.clone()], &mut program));
+        let second = log(&machine, &program, 2, folder.path())?;
+        ways.push(way(&file, vec![first, second], &mut program));
     }
-    let first = log(&machine, &original, 1, folder.path())?;
-    let one = way(corrected(vec![first.clone()]), &mut program);
-    let second = log(&machine, &program, 2, folder.path())?;
-    let two = way(corrected(vec![first, second]), &mut program);
     Ok(Case {
         name: format!("{name}-{number} {part}"),
         was,
-        ways: vec![right, without, one, two],
+        ways,
     })
 }
 
 const WAYS: [&str; 4] = ["right file", "no log", "one log", "two logs"];
 
 fn print(case: &Case) {
+    let was = &case.was;
     for (name, (is, predicted, refusal)) in WAYS.iter().zip(&case.ways) {
-        let [rms, max] = ratios(&case.was, is);
-        let band = predicted.map_or(String::new(), |predicted| {
-            let [low, high] = predicted.band_um;
+        let [rms, max] = ratios(was, is);
+        let band = predicted.map_or(String::new(), |it| {
+            let [low, high] = it.band_um;
             format!(
                 "{:>6.2} {:>6.2} ({low:.2} to {high:.2})",
-                is.next_um, predicted.rms_um
+                is.next_um, it.rms_um
             )
         });
         println!(
             "{:<20} {name:<10} {:>6.2} {:>6.2} {rms:>6.3}  {:>6.1} {:>6.1} {max:>6.3}  {:>6.3}  {band} {}",
             case.name,
-            case.was.rms_um,
+            was.rms_um,
             is.rms_um,
-            case.was.max_um,
+            was.max_um,
             is.max_um,
-            is.time_s / case.was.time_s,
+            is.time_s / was.time_s,
             refusal.as_deref().unwrap_or_default()
         );
     }
@@ -403,110 +354,80 @@ fn print(case: &Case) {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
-    if values.len() % 2 == 1 {
-        values[middle]
-    } else {
-        0.5 * (values[middle - 1] + values[middle])
+    match values.len() % 2 {
+        1 => values[middle],
+        _ => 0.5 * (values[middle - 1] + values[middle]),
     }
 }
 
-fn summary(cases: &[&Case], name: &str) {
-    if cases.is_empty() {
-        return;
-    }
-    for (way, label) in WAYS.iter().enumerate().take(cases[0].ways.len()) {
-        let all: Vec<[f64; 2]> = cases
-            .iter()
-            .map(|case| ratios(&case.was, &case.ways[way].0))
-            .collect();
-        let of = |which: usize| all.iter().map(|ratios| ratios[which]).collect::<Vec<_>>();
-        let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
-        let times = cases
-            .iter()
-            .map(|case| case.ways[way].0.time_s / case.was.time_s)
-            .collect::<Vec<_>>();
-        let is_worse = |case: &&&Case| {
-            let is = &case.ways[way].0;
-            is.rms_um > case.was.rms_um + 0.05 || is.max_um > case.was.max_um + 1.0
+fn summary(cases: &[Case], name: &str, is_of: impl Fn(&str) -> bool) {
+    let cases: Vec<&Case> = cases.iter().filter(|case| is_of(&case.name)).collect();
+    let Some(first) = cases.first() else { return };
+    for (way, label) in WAYS.iter().enumerate().take(first.ways.len()) {
+        let of = |number: &dyn Fn(&Errors, &Errors) -> f64| -> Vec<f64> {
+            cases
+                .iter()
+                .map(|case| number(&case.was, &case.ways[way].0))
+                .collect()
         };
-        let worse = cases.iter().filter(is_worse).count();
-        let predicted = || {
-            cases.iter().filter_map(|case| {
-                let (is, predicted, refusal) = &case.ways[way];
-                predicted
-                    .filter(|_| refusal.is_none())
-                    .map(|predicted| (is, predicted))
-            })
-        };
-        let within = predicted()
-            .filter(|(is, p)| (p.band_um[0]..=p.band_um[1]).contains(&is.next_um))
-            .count();
+        let [rms, max] = [0, 1].map(|which| of(&|was, is| ratios(was, is)[which]));
+        let times = of(&|was, is| is.time_s / was.time_s);
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let (mut worse, mut within, mut predicted) = (0, 0, 0);
+        for (was, (is, prediction, refusal)) in cases.iter().map(|it| (&it.was, &it.ways[way])) {
+            let is_worse = is.rms_um > was.rms_um + 0.05 || is.max_um > was.max_um + 1.0;
+            worse += usize::from(is_worse);
+            if let (Some(it), None) = (prediction, refusal) {
+                predicted += 1;
+                within += usize::from((it.band_um[0]..=it.band_um[1]).contains(&is.next_um));
+            }
+        }
         println!(
             "{name:<10} {label:<10} RMS {:.3} median, {:.3} most; largest {:.3} median, {:.3} most; time {:.3} most; {worse} worse; \
-             {within} of {} predicted",
-            median(of(0)),
-            most(of(0)),
-            median(of(1)),
-            most(of(1)),
-            most(times),
-            predicted().count()
+             {within} of {predicted} predicted",
+            median(rms.clone()),
+            most(&rms),
+            median(max.clone()),
+            most(&max),
+            most(&times)
         );
     }
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let (options, arguments): (Vec<String>, Vec<String>) =
-        std::env::args().skip(1).partition(|a| a.starts_with("--"));
-    let given = |wanted: &str| options.iter().any(|option| option == wanted);
-    let kinds = [("--unknown", Off::Unknown), ("--mistyped", Off::Mistyped)];
-    let off = kinds
+/// Corrects and cuts what the arguments ask for.
+pub(crate) fn learned(arguments: Vec<String>) -> Result<(), Box<dyn Error>> {
+    let (options, numbers): (Vec<String>, Vec<String>) = arguments
         .into_iter()
-        .find(|(option, _)| given(option))
-        .map_or(Off::File, |(_, off)| off);
-    let logs = !given("--without-logs");
-    let exact = given("--exact");
-    let mut arguments = arguments.into_iter();
-    let seed = arguments.next().map_or(Ok(1), |seed| seed.parse())?;
-    let machines = arguments.next().map_or(Ok(COUNT), |count| count.parse())?;
-    let work: Vec<(usize, &str)> = (0..machines)
-        .flat_map(|number| PARTS.map(|part| (number, part)))
-        .collect();
+        .partition(|argument| argument.starts_with("--"));
+    let given = |wanted: &str| options.iter().any(|option| option == wanted);
+    let off = match (given("--unknown"), given("--mistyped")) {
+        (true, _) => Off::Unknown,
+        (_, true) => Off::Mistyped,
+        _ => Off::File,
+    };
+    let with = [!given("--without-logs"), given("--exact")];
+    let seed = numbers.first().map_or(Ok(1), |seed| seed.parse())?;
+    let machines = numbers.get(1).map_or(Ok(COUNT), |count| count.parse())?;
+    let of_machine = |number: usize| PARTS.map(|part| (number, part));
+    let work: Vec<(usize, &str)> = (0..machines).flat_map(of_machine).collect();
     println!(
         "RMS and largest error of original and program in um, ratios; ratio of time; RMS of one more cut, and its prediction"
     );
-    let cases: Vec<Case> = work
-        .par_iter()
-        .filter_map(
-            |&(number, part)| match case(number, part, seed, off, [logs, exact]) {
-                Ok(case) => {
-                    print(&case);
-                    Some(case)
-                }
-                Err(error) => {
-                    println!("{number} {part}: {error}");
-                    None
-                }
-            },
-        )
-        .collect();
+    let one = |&(number, part): &(usize, &str)| {
+        let case = case(number, part, seed, off, with);
+        match &case {
+            Ok(case) => print(case),
+            Err(error) => println!("{number} {part}: {error}"),
+        }
+        case.ok()
+    };
+    let cases: Vec<Case> = work.par_iter().filter_map(one).collect();
     for part in PARTS {
-        summary(
-            &cases
-                .iter()
-                .filter(|case| case.name.ends_with(part))
-                .collect::<Vec<_>>(),
-            part,
-        );
+        summary(&cases, part, |name| name.ends_with(part));
     }
     for file in MACHINES {
-        summary(
-            &cases
-                .iter()
-                .filter(|case| case.name.starts_with(file))
-                .collect::<Vec<_>>(),
-            file,
-        );
+        summary(&cases, file, |name| name.starts_with(file));
     }
-    summary(&cases.iter().collect::<Vec<_>>(), "all");
+    summary(&cases, "all", |_| true);
     Ok(())
 }
