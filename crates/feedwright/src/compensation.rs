@@ -31,10 +31,10 @@ pub enum GeometryChoice {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NamedGeometry {
     /// Name in messages.
-    pub name: String,
+    pub(crate) name: String,
     /// Content of the file.
     #[serde(serialize_with = "as_text")]
-    pub geometry: GeometryFile,
+    pub(crate) geometry: GeometryFile,
 }
 
 fn as_text<S: Serializer>(geometry: &GeometryFile, serializer: S) -> Result<S::Ok, S::Error> {
@@ -44,7 +44,7 @@ fn as_text<S: Serializer>(geometry: &GeometryFile, serializer: S) -> Result<S::O
 impl GeometryChoice {
     /// The same for a program that compensates it itself. What the machine file states is off then.
     #[must_use]
-    pub fn in_program(self) -> Self {
+    pub(crate) fn in_program(self) -> Self {
         match self {
             Self::File(file) | Self::InProgram(file) => Self::InProgram(file),
             Self::Off | Self::Machine => Self::Off,
@@ -55,8 +55,8 @@ impl GeometryChoice {
     /// positions, mm. With a geometry file, it is where the tool of the machine is, too.
     ///
     /// # Errors
-    /// As [`Self::on_any_part`], and a geometry that was not measured where the part is.
-    pub fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
+    /// As `Self::on_any_part`, and a geometry that was not measured where the part is.
+    pub(crate) fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
         let compensating = self.on_any_part(machine)?;
         if let Self::File(file) | Self::InProgram(file) = self {
             file.geometry.covers(machine.axis_count(), box_mm)?;
@@ -69,7 +69,7 @@ impl GeometryChoice {
     /// # Errors
     /// A geometry that is out of its range, does not suit the machine, or does not pass its own
     /// check.
-    pub fn on_any_part(&self, machine: &Machine) -> Result<Machine, JobError> {
+    pub(crate) fn on_any_part(&self, machine: &Machine) -> Result<Machine, JobError> {
         Ok(match self {
             Self::Off => Machine {
                 compensated: None,

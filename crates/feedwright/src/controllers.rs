@@ -25,11 +25,12 @@ use feedwright_ident::Model;
 use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::Serialize;
 
-pub use recorded::RecordedValues;
+pub(crate) use recorded::RecordedValues;
+pub use settings::Setting;
 #[cfg(feature = "command")]
 pub(crate) use settings::range;
-pub use settings::{Setting, SettingError};
-pub use setup::{CutsUncorrected, ModelMisfit, Setup};
+pub(crate) use setup::CutsUncorrected;
+pub use setup::{ModelMisfit, Setup};
 
 /// The stage of all that a first cut on a machine waits for.
 pub(crate) fn identifying<'a>(machine: &Machine, watch: &'a dyn Watch) -> StageSteps<'a> {
@@ -63,7 +64,7 @@ impl Deref for Entry {
 }
 
 /// Makes a controller from a setup and the values of its parameters.
-pub type Maker<const N: usize> = fn(&mut Setup<'_>, Values<'_>) -> Box<dyn Controller<N>>;
+pub(crate) type Maker<const N: usize> = fn(&mut Setup<'_>, Values<'_>) -> Box<dyn Controller<N>>;
 
 /// A row of a table of controllers: its row of the family (or the name, knowledge and parameters of
 /// another one), summary, source, laps, and how it is made for N axes from a [`Setup`] and the values

@@ -55,11 +55,11 @@ pub struct Constraints {
 #[error("limit {name} is {value}, it must be a finite number {bound}")]
 pub struct LimitsError {
     /// Name of the limit, with its unit.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Its value.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Range that the value must lie in, as text.
-    pub bound: &'static str,
+    pub(crate) bound: &'static str,
 }
 
 impl AxisLimits {
@@ -95,7 +95,7 @@ impl Constraints {
     ///
     /// # Errors
     /// The first limit that is not.
-    pub fn check(&self) -> Result<(), LimitsError> {
+    pub(crate) fn check(&self) -> Result<(), LimitsError> {
         let path = &self.path;
         // From 1e-6 to 1e9 nothing under- or overflows, and no machine lies outside.
         for (name, value) in [
@@ -143,7 +143,7 @@ impl Constraints {
     ///
     /// # Errors
     /// The first that is not there.
-    pub fn check_axes(&self) -> Result<(), LimitsError> {
+    pub(crate) fn check_axes(&self) -> Result<(), LimitsError> {
         let bound = "from 1e-6 to 1e12, for a planner that plans axis by axis";
         let none = [AxisLimits::NONE];
         for axis in if self.axes.is_empty() {
@@ -175,7 +175,7 @@ impl Constraints {
 
     /// Speed that the axes that move along with a piece allow: the slowest of them bounds the
     /// others. Nothing that moves along is no bound (division by zero).
-    pub fn along_mm_s(&self, turn_deg_mm: f64, further_mm_mm: f64) -> f64 {
+    pub(crate) fn along_mm_s(&self, turn_deg_mm: f64, further_mm_mm: f64) -> f64 {
         let rotary_mm_s = self.rotary_deg_s / turn_deg_mm;
         rotary_mm_s.min(self.path.rapid_mm_s / further_mm_mm)
     }

@@ -37,7 +37,7 @@
 //! | Topic | Names |
 //! |---|---|
 //! | Path | [`Pieces`], [`Piece`], [`Curve`], [`Steps`], [`Step`], [`PathError`] |
-//! | Planned path beside the programmed one | [`PairedStep`], [`PlannedPiece`], [`AlignedPaths`] |
+//! | Planned path beside the programmed one | [`PlannedPiece`], [`AlignedPaths`] |
 //! | Limits | [`Constraints`], [`PathLimits`], [`AxisLimits`], [`SpeedCaps`], [`LimitsError`] |
 //! | Feed planners | [`FEED_PLANNERS`], [`FeedPlanner`], [`FeedMember`], [`feed_planner`], [`TimeOptimal`], [`Trapezoid`] |
 //! | Plan | [`Plan`], [`Planned`], [`Phase`], [`Span`], [`AxisMotion`], [`PlanSink`] |
@@ -78,8 +78,7 @@ mod feed;
 pub use constraints::speed_caps::SpeedCaps;
 pub use constraints::{AxisLimits, Constraints, LimitsError, PathLimits};
 pub use feed::feed_override::{
-    MOST_OVERRIDE, PublishedPlan, PublishedSpan, ScaledStep, ScalingLimits, TimeScaling,
-    shortest_stop_mm,
+    MOST_OVERRIDE, PublishedPlan, ScaledStep, ScalingLimits, TimeScaling, shortest_stop_mm,
 };
 pub use feed::plan::{KeptPlan, Plan, PlanSink, Planned};
 pub use feed::sections::{Section, SectionPlanner};
@@ -91,7 +90,7 @@ pub use feed::{
     feed_mm_s, feed_planner,
 };
 pub use paired::aligned::AlignedPaths;
-pub use paired::{PairedStep, PairedSteps, PlannedPiece, ProgrammedPart};
+pub use paired::{PairedSteps, PlannedPiece, ProgrammedPart};
 pub use path::arc::Arc;
 pub use path::pieces::Pieces;
 pub use path::smooth::{Jet, Parametric, Smooth};

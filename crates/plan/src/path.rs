@@ -189,11 +189,11 @@ pub enum Step {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
     /// Line of the program.
-    pub line: u32,
+    pub(crate) line: u32,
     /// Duration by the programmed feedrate, s; 0 for a rapid.
     pub seconds: f64,
     /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
-    pub turn_deg: f64,
+    pub(crate) turn_deg: f64,
     /// Way of U, V and W, mm: at the machine's rapid rate it takes no less.
     pub further_mm: f64,
 }
@@ -263,19 +263,4 @@ pub enum PathError {
         /// Its seconds.
         seconds: f64,
     },
-}
-
-impl PathError {
-    /// Line of the program.
-    pub const fn line(&self) -> u32 {
-        match self {
-            Self::Coordinate { line, .. }
-            | Self::Gap { line, .. }
-            | Self::Feed { line, .. }
-            | Self::ArcRadius { line, .. }
-            | Self::ArcTurns { line }
-            | Self::Spline { line, .. }
-            | Self::Dwell { line, .. } => *line,
-        }
-    }
 }

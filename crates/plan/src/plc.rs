@@ -72,7 +72,7 @@ impl Plc {
 
     /// Returns the time that the tool waits for an event, s, and updates the spindle speed. M0 and
     /// M1 count as 0 s, because their time depends on the operator.
-    pub fn takes_s(&mut self, kind: &EventKind) -> f64 {
+    pub(crate) fn takes_s(&mut self, kind: &EventKind) -> f64 {
         match kind {
             EventKind::Dwell { seconds } => *seconds,
             EventKind::SpindleSpeed { rpm } => {
@@ -98,7 +98,7 @@ impl Plc {
     }
 
     /// Rate at which a rotary axis turns at most, degrees/s; infinite without a limit.
-    pub const fn most_deg_s(&self) -> f64 {
+    pub(crate) const fn most_deg_s(&self) -> f64 {
         if self.durations.rotary_deg_s > 0.0 {
             self.durations.rotary_deg_s
         } else {

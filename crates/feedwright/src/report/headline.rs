@@ -34,7 +34,7 @@ pub(crate) enum HeadlinePart {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Headline {
     /// Its parts, in order.
-    pub parts: Vec<HeadlinePart>,
+    pub(crate) parts: Vec<HeadlinePart>,
 }
 
 impl fmt::Display for Headline {
@@ -102,7 +102,7 @@ impl Report {
 
     /// Returns true if the run that is judged reached its end within the tolerance. Without a
     /// tolerance, reaching the end is enough.
-    pub fn is_within_tolerance(&self) -> bool {
+    pub(crate) fn is_within_tolerance(&self) -> bool {
         self.judged().is_some_and(|run| {
             run.outcome == Outcome::Completed
                 && self
@@ -120,7 +120,7 @@ impl Report {
     }
 
     /// Returns true if the requested controller left most of the part, or its end, uncorrected.
-    pub fn is_mostly_uncorrected(&self) -> bool {
+    pub(crate) fn is_mostly_uncorrected(&self) -> bool {
         self.summary(Role::Corrected)
             .is_some_and(RunSummary::is_mostly_uncorrected)
     }

@@ -36,11 +36,11 @@ const LENGTH_RATIO: f64 = 3.0;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct JointSide {
     /// Unit tangent at the joint.
-    pub tangent: [f64; 3],
+    pub(crate) tangent: [f64; 3],
     /// Curvature at the joint, 1/mm.
     pub curvature_1_mm: f64,
     /// Length of the piece, mm.
-    pub length_mm: f64,
+    pub(crate) length_mm: f64,
 }
 
 /// Upper bound on the square of the speed at the joint, mm2/s2; infinity means no bound.

@@ -23,7 +23,7 @@ mod landing;
 mod braking;
 
 pub use braking::shortest_stop_mm;
-pub use published::{PublishedPlan, PublishedSpan};
+pub use published::PublishedPlan;
 
 use super::AxisMotion;
 use crate::constraints::AxisLimits;
@@ -74,7 +74,7 @@ pub struct ScaledTime {
 impl ScaledTime {
     /// Returns the state after a time at a constant change of the slope, 1/s2.
     #[inline]
-    pub fn after(&self, t: f64, bend_1_s2: f64) -> Self {
+    pub(crate) fn after(&self, t: f64, bend_1_s2: f64) -> Self {
         let Self {
             tau_s,
             rate,
@@ -89,7 +89,7 @@ impl ScaledTime {
 
     /// Returns the motion of the axes at this rate where the plan has the motion `planned`.
     #[inline]
-    pub fn motion(&self, planned: &AxisMotion, bend_1_s2: f64) -> AxisMotion {
+    pub(crate) fn motion(&self, planned: &AxisMotion, bend_1_s2: f64) -> AxisMotion {
         let (r, s) = (self.rate, self.slope_1_s);
         let AxisMotion {
             position_mm,
@@ -114,7 +114,7 @@ pub struct ScaledStep {
     /// State at the start of the step.
     pub from: ScaledTime,
     /// Change of the slope, 1/s2.
-    pub bend_1_s2: f64,
+    pub(crate) bend_1_s2: f64,
     /// Duration, s: a period or less.
     pub duration_s: f64,
     /// Number of the span.

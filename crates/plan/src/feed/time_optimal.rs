@@ -147,15 +147,15 @@ pub struct PlanCounts {
     /// Windows that were committed.
     pub windows: u64,
     /// Solutions that were looked for.
-    pub solutions: u64,
+    pub(crate) solutions: u64,
     /// Solutions that failed.
     pub failed: u64,
     /// Windows in whose place the motion went on along the one before.
-    pub went_on: u64,
+    pub(crate) went_on: u64,
     /// Straight motions from rest to rest in place of a window.
     pub straight: u64,
     /// Newton steps of all solutions.
-    pub iterations: u64,
+    pub(crate) iterations: u64,
 }
 
 /// See the module's page.
@@ -212,7 +212,7 @@ impl TimeOptimal {
 
     /// The bound that plans are measured by: the whole path from rest to rest as one window, with
     /// the tolerance held at its nodes only. Memory and latency grow with the program.
-    pub fn whole(constraints: &Constraints) -> Self {
+    pub(crate) fn whole(constraints: &Constraints) -> Self {
         Self {
             at_nodes: true,
             ..Self::whole_within(constraints)

@@ -80,7 +80,7 @@ impl Arc {
     }
 
     /// Length, mm.
-    pub const fn length_mm(&self) -> f64 {
+    pub(crate) const fn length_mm(&self) -> f64 {
         self.length_mm
     }
 
@@ -110,13 +110,13 @@ impl Arc {
     }
 
     /// Curvature, 1/mm: `cos(gamma)^2 / R`.
-    pub fn curvature(&self) -> f64 {
+    pub(crate) fn curvature(&self) -> f64 {
         self.in_plane * self.turn_rad_mm
     }
 
     /// Position and tangent at `s_mm`.
     #[inline]
-    pub fn at(&self, s_mm: f64) -> Point {
+    pub(crate) fn at(&self, s_mm: f64) -> Point {
         let (half_sin, half_cos) = libm::sincos(0.5 * self.turn_rad_mm * s_mm);
         let sin = 2.0 * half_sin * half_cos;
         let versine = 2.0 * half_sin * half_sin;
@@ -141,7 +141,7 @@ impl Arc {
 
     /// Derivatives at `s_mm`: with `phi' = k`, `p'' = R k^2 (cos(phi) n0 - sin(phi) t0)`, `p''' =
     /// -R k^3 (cos(phi) t0 + sin(phi) n0)`.
-    pub fn derivatives(&self, s_mm: f64) -> Derivatives {
+    pub(crate) fn derivatives(&self, s_mm: f64) -> Derivatives {
         let (sin, cos) = libm::sincos(self.turn_rad_mm * s_mm);
         let along = add_scaled(scale(cos, self.tangent0), sin, self.normal0);
         let inward = add_scaled(scale(cos, self.normal0), -sin, self.tangent0);
@@ -155,7 +155,7 @@ impl Arc {
 
     /// Arc length of the nearest point between the bounds.
     #[inline]
-    pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
+    pub(crate) fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
         let from_start = sub(point_mm, self.start_mm);
         // In the frame of the start, the circle's point at angle phi is R (sin(phi), 1 - cos(phi)).
         let across = dot(from_start, self.tangent0);

@@ -13,7 +13,7 @@ pub struct Line {
 
 impl Line {
     /// The line between two points; `None` when they coincide.
-    pub fn new(start_mm: [f64; 3], end_mm: [f64; 3]) -> Option<Self> {
+    pub(crate) fn new(start_mm: [f64; 3], end_mm: [f64; 3]) -> Option<Self> {
         let chord = sub(end_mm, start_mm);
         let length_mm = norm(chord);
         (length_mm > 0.0).then(|| Self {
@@ -24,13 +24,13 @@ impl Line {
     }
 
     /// Length, mm.
-    pub const fn length_mm(&self) -> f64 {
+    pub(crate) const fn length_mm(&self) -> f64 {
         self.length_mm
     }
 
     /// Position and tangent at `s_mm`.
     #[inline]
-    pub fn at(&self, s_mm: f64) -> Point {
+    pub(crate) fn at(&self, s_mm: f64) -> Point {
         Point {
             position_mm: add_scaled(self.start_mm, s_mm, self.tangent),
             tangent: self.tangent,
@@ -38,7 +38,7 @@ impl Line {
     }
 
     /// Derivatives, the same everywhere.
-    pub const fn derivatives(&self) -> Derivatives {
+    pub(crate) const fn derivatives(&self) -> Derivatives {
         Derivatives {
             first: self.tangent,
             second_1_mm: [0.0; 3],
@@ -48,7 +48,7 @@ impl Line {
 
     /// Arc length of the nearest point: the foot of the perpendicular, kept between the bounds.
     #[inline]
-    pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
+    pub(crate) fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
         dot(sub(point_mm, self.start_mm), self.tangent)
             .min(hi_mm)
             .max(lo_mm)

@@ -123,7 +123,7 @@ impl Smooth {
     }
 
     /// Position and tangent at `s_mm`.
-    pub fn at(&self, s_mm: f64) -> Point {
+    pub(crate) fn at(&self, s_mm: f64) -> Point {
         let cell = &self.cells[self.cell_of(s_mm)];
         let u = cell.parameter(s_mm);
         let jet = self.shape.jet(cell.span, u);
@@ -153,7 +153,7 @@ impl Smooth {
     }
 
     /// Curvature at `s_mm`, 1/mm.
-    pub fn curvature(&self, s_mm: f64) -> f64 {
+    pub(crate) fn curvature(&self, s_mm: f64) -> f64 {
         curvature(&self.jet_at(s_mm))
     }
 
@@ -163,7 +163,7 @@ impl Smooth {
     ///
     /// `p'' = C'' u'^2 + C' u''`, `p''' = C''' u'^3 + 3 C'' u' u'' + C' u'''`. At a cusp there are
     /// none.
-    pub fn derivatives(&self, s_mm: f64) -> Derivatives {
+    pub(crate) fn derivatives(&self, s_mm: f64) -> Derivatives {
         let cell = &self.cells[self.cell_of(s_mm)];
         let u = cell.parameter(s_mm);
         let Jet { first, second, .. } = self.shape.jet(cell.span, u);
@@ -189,12 +189,12 @@ impl Smooth {
     }
 
     /// Arc lengths at both ends of a cell.
-    pub fn cell_mm(&self, index: usize) -> (f64, f64) {
+    pub(crate) fn cell_mm(&self, index: usize) -> (f64, f64) {
         (self.cells[index].s_mm, self.cell_end_mm(index))
     }
 
     /// Curvature at `s_mm` seen from a cell: where two cells meet, it may differ.
-    pub fn curvature_in(&self, index: usize, s_mm: f64) -> f64 {
+    pub(crate) fn curvature_in(&self, index: usize, s_mm: f64) -> f64 {
         curvature(&self.jet_in(&self.cells[index], s_mm))
     }
 

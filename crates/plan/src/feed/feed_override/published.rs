@@ -8,15 +8,15 @@ const AT_S: f64 = 1e-11;
 
 /// A part of a plan with a constant jerk of each axis.
 #[derive(Debug, Clone, Copy)]
-pub struct PublishedSpan {
+pub(crate) struct PublishedSpan {
     /// Plan time at which it begins, s.
     pub from_s: f64,
     /// Motion of the axes at its start.
-    pub motion: AxisMotion,
+    pub(crate) motion: AxisMotion,
     /// True where feed overrides apply: it is not a rapid.
-    pub cutting: bool,
+    pub(crate) cutting: bool,
     /// True where the tool rests.
-    pub is_rest: bool,
+    pub(crate) is_rest: bool,
 }
 
 /// Part of a plan that is final.
@@ -70,7 +70,7 @@ impl PublishedPlan {
 
     /// Span at plan time `tau_s`. After the end of the plan it is the last span; a plan without
     /// spans gives a rest.
-    pub fn span_at(&self, tau_s: f64) -> PublishedSpan {
+    pub(crate) fn span_at(&self, tau_s: f64) -> PublishedSpan {
         let none = PublishedSpan {
             from_s: 0.0,
             motion: AxisMotion::REST,

@@ -36,19 +36,19 @@ const KINK_PART: f64 = 0.25;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArcBlend {
     /// The arc.
-    pub shape: BlendShape,
+    pub(crate) shape: BlendShape,
     /// Speed asked for.
-    pub feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
     /// Highest speed.
-    pub highest_mm_s: f64,
+    pub(crate) highest_mm_s: f64,
     /// Acceleration.
-    pub accel_mm_s2: f64,
+    pub(crate) accel_mm_s2: f64,
     /// Remainder of the segment before; `None` where the arc replaces it.
-    pub before: Option<SegmentShape>,
+    pub(crate) before: Option<SegmentShape>,
     /// Remainder of the segment behind.
-    pub after: SegmentShape,
+    pub(crate) after: SegmentShape,
     /// Length cut from the segment before and from the segment behind, mm.
-    pub cut_mm: [f64; 2],
+    pub(crate) cut_mm: [f64; 2],
 }
 
 /// A corner.

@@ -34,36 +34,36 @@ const MOST_PARTS: usize = 4096;
 #[derive(Debug, Clone)]
 pub(super) struct PlannerBlock {
     /// Its curve.
-    pub shape: SegmentShape,
+    pub(crate) shape: SegmentShape,
     /// Places along it, and the arc lengths of the program that they stand for, mm.
-    pub places_mm: Vec<[f64; 2]>,
+    pub(crate) places_mm: Vec<[f64; 2]>,
     /// True for a rapid.
-    pub is_rapid: bool,
+    pub(crate) is_rapid: bool,
     /// True where an axis other than X, Y and Z moves along.
-    pub is_rotary: bool,
+    pub(crate) is_rotary: bool,
     /// Speed asked for.
-    pub feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
     /// Highest speed that the axes allow.
-    pub highest_mm_s: f64,
+    pub(crate) highest_mm_s: f64,
     /// Acceleration.
-    pub accel_mm_s2: f64,
+    pub(crate) accel_mm_s2: f64,
     /// Corner mode at its end.
-    pub corner: Corner,
+    pub(crate) corner: Corner,
 }
 
 /// Mode that all joined lines share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BlockMode {
     /// True for rapids.
-    pub is_rapid: bool,
+    pub(crate) is_rapid: bool,
     /// True where an axis other than X, Y and Z moves along.
-    pub is_rotary: bool,
+    pub(crate) is_rotary: bool,
     /// Speed asked for.
-    pub feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
     /// Highest speed of what moves along.
-    pub along_mm_s: f64,
+    pub(crate) along_mm_s: f64,
     /// Corner mode at their ends.
-    pub corner: Corner,
+    pub(crate) corner: Corner,
 }
 
 impl BlockMode {

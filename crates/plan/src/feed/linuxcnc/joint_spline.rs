@@ -14,18 +14,18 @@ use crate::vector::Vector;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodPoint {
     /// Position, mm.
-    pub position_mm: Vector,
+    pub(crate) position_mm: Vector,
     /// Arc length, mm.
-    pub station_mm: f64,
+    pub(crate) station_mm: f64,
 }
 
 /// The motion of one servo period.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodMotion {
     /// Motion of the axes.
-    pub axes: AxisMotion,
+    pub(crate) axes: AxisMotion,
     /// Arc length, speed, acceleration and jerk of the place on the program, at the beginning.
-    pub station: [f64; 4],
+    pub(crate) station: [f64; 4],
 }
 
 /// The last points.

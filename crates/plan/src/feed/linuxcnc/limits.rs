@@ -36,11 +36,11 @@ pub(super) const NO_DISTANCE_MM: f64 = 1e-12;
 #[derive(Debug, Clone)]
 pub(super) struct DirectionLimits {
     /// Speed of each axis.
-    pub velocity_mm_s: Vector,
+    pub(crate) velocity_mm_s: Vector,
     /// Acceleration of each axis.
-    pub accel_mm_s2: Vector,
+    pub(crate) accel_mm_s2: Vector,
     /// Speed along the path.
-    pub path_mm_s: f64,
+    pub(crate) path_mm_s: f64,
 }
 
 impl DirectionLimits {

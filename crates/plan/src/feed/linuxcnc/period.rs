@@ -19,9 +19,9 @@ const NO_TIME_S: f64 = 1e-12;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PeriodStep {
     /// Displacement of the axes, mm.
-    pub way_mm: Vector,
+    pub(crate) way_mm: Vector,
     /// Advance of the arc length on the programmed path, mm.
-    pub station_mm: f64,
+    pub(crate) station_mm: f64,
 }
 
 impl SegmentQueue {

@@ -28,7 +28,7 @@ const MOST_PEAKS: usize = 4;
 #[derive(Debug)]
 pub(super) struct SegmentQueue {
     /// Limits of the machine.
-    pub limits: DirectionLimits,
+    pub(crate) limits: DirectionLimits,
     /// Segments, the one under way first.
     pub segments: VecDeque<MotionSegment>,
 }

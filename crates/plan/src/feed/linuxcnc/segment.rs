@@ -23,73 +23,73 @@ pub(super) enum SegmentEnd {
 #[derive(Debug, Clone)]
 pub(super) struct MotionSegment {
     /// Its curve.
-    pub shape: SegmentShape,
+    pub(crate) shape: SegmentShape,
     /// Places along it before its beginning was cut, and the arc lengths of the program that they
     /// stand for, mm.
-    pub places_mm: Vec<[f64; 2]>,
+    pub(crate) places_mm: Vec<[f64; 2]>,
     /// Length cut from its beginning.
-    pub cut_mm: f64,
+    pub(crate) cut_mm: f64,
     /// Length.
-    pub length_mm: f64,
+    pub(crate) length_mm: f64,
     /// Length before anything was cut.
     pub nominal_mm: f64,
     /// Distance covered so far.
-    pub progress_mm: f64,
+    pub(crate) progress_mm: f64,
     /// Speed asked for.
-    pub feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
     /// Highest speed.
-    pub highest_mm_s: f64,
+    pub(crate) highest_mm_s: f64,
     /// Speed now.
-    pub speed_mm_s: f64,
+    pub(crate) speed_mm_s: f64,
     /// Speed at its end, as the look-ahead allows it.
-    pub final_mm_s: f64,
+    pub(crate) final_mm_s: f64,
     /// Speed at which it will end within this servo period.
-    pub ending_mm_s: f64,
+    pub(crate) ending_mm_s: f64,
     /// Acceleration.
-    pub accel_mm_s2: f64,
+    pub(crate) accel_mm_s2: f64,
     /// Part of the acceleration that is for the tangent.
-    pub tangential_ratio: f64,
+    pub(crate) tangential_ratio: f64,
     /// Speed at which the corner at the end takes no more than its part of the acceleration; none
     /// where there is no such corner.
-    pub kink_mm_s: Option<f64>,
+    pub(crate) kink_mm_s: Option<f64>,
     /// Parts of the acceleration that the corners at its beginning and at its end take.
-    pub kink_parts: [f64; 2],
+    pub(crate) kink_parts: [f64; 2],
     /// Type of its end.
-    pub end: SegmentEnd,
+    pub(crate) end: SegmentEnd,
     /// True where the segment before blends into it.
-    pub is_blended_into: bool,
+    pub(crate) is_blended_into: bool,
     /// Tolerance of a blend, mm; 0 means no tolerance.
     pub tolerance_mm: f64,
     /// True for a rapid.
-    pub is_rapid: bool,
+    pub(crate) is_rapid: bool,
     /// True where an axis other than X, Y and Z moves along.
-    pub is_rotary: bool,
+    pub(crate) is_rotary: bool,
     /// True once its length is final.
-    pub is_final: bool,
+    pub(crate) is_final: bool,
     /// True once a bound limits its final speed, instead of the distance in which the next segments
     /// slow down.
-    pub is_peak: bool,
+    pub(crate) is_peak: bool,
     /// State that the servo periods update while it moves.
-    pub run: SegmentRun,
+    pub(crate) run: SegmentRun,
 }
 
 /// State of a segment while it moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRun {
     /// Time that it has in this servo period.
-    pub period_s: f64,
+    pub(crate) period_s: f64,
     /// It has begun.
     pub is_active: bool,
     /// It runs at one acceleration.
-    pub is_ramp: bool,
+    pub(crate) is_ramp: bool,
     /// It ends within this servo period.
-    pub ends_within: bool,
+    pub(crate) ends_within: bool,
     /// It is over.
     pub is_over: bool,
     /// It slows down to its final speed.
     pub slows_down: bool,
     /// The next one has begun.
-    pub blends: bool,
+    pub(crate) blends: bool,
 }
 
 impl MotionSegment {

@@ -11,11 +11,11 @@ const NO_RISE: f64 = 1e-9;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LineShape {
     /// Start point.
-    pub start_mm: Vector,
+    pub(crate) start_mm: Vector,
     /// Its direction.
-    pub direction: Vector,
+    pub(crate) direction: Vector,
     /// Its length.
-    pub length_mm: f64,
+    pub(crate) length_mm: f64,
 }
 
 /// A circle, helix or spiral: `center + (1 + growth phi / angle) (cos(phi) first + sin(phi)
@@ -23,7 +23,7 @@ pub(super) struct LineShape {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CircleShape {
     /// Centre, beside the start.
-    pub center_mm: Vector,
+    pub(crate) center_mm: Vector,
     /// Vector from the center to the start.
     pub first_mm: Vector,
     /// Vector of the same length in the direction of travel at the start.
@@ -31,34 +31,34 @@ pub(super) struct CircleShape {
     /// Unit vector of the axis that it turns about, to the left.
     pub normal: Vector,
     /// Radius at the start.
-    pub radius_mm: f64,
+    pub(crate) radius_mm: f64,
     /// Angle turned.
-    pub angle: f64,
+    pub(crate) angle: f64,
     /// Growth of the radius over the whole angle, as a part of the radius at the start.
-    pub growth: f64,
+    pub(crate) growth: f64,
     /// Way along the axis.
     pub rise_mm: Vector,
     /// Rounding error at its end, mm: from the computed end to the programmed end.
-    pub left_over_mm: Vector,
+    pub(crate) left_over_mm: Vector,
 }
 
 /// A circular arc between two segments, with what is left of a line that it replaces before it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendShape {
     /// Start point of the arc.
-    pub start_mm: Vector,
+    pub(crate) start_mm: Vector,
     /// Tangent there.
-    pub tangent: Vector,
+    pub(crate) tangent: Vector,
     /// Length of the line before it.
-    pub line_mm: f64,
+    pub(crate) line_mm: f64,
     /// Centre.
-    pub center_mm: Vector,
+    pub(crate) center_mm: Vector,
     /// Vectors from the center to both ends.
     pub ends_mm: [Vector; 2],
     /// Radius at the start.
-    pub radius_mm: f64,
+    pub(crate) radius_mm: f64,
     /// Angle turned.
-    pub angle: f64,
+    pub(crate) angle: f64,
 }
 
 /// The curve of a segment.

@@ -42,7 +42,7 @@ struct Slope {
 
 impl Smooth {
     /// Arc length of the nearest point between the bounds.
-    pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
+    pub(crate) fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
         self.sole_foot(point_mm, lo_mm, hi_mm)
             .unwrap_or_else(|| self.search(point_mm, lo_mm, hi_mm))
     }
