@@ -6,7 +6,7 @@
 //! ```
 //!
 //! It decides in every servo period, within it. It learns the errors of its model in motion, and
-//! judges whether the model is that of the machine. The laboratory makes its limit, `lqg-preview`,
+//! judges whether the model fits the machine. The laboratory makes its limit, `lqg-preview`,
 //! from the same controller with exact knowledge that no real controller has: the statistics of the
 //! noise, the amplitude, frequency and wander of the disturbance, and cogging and interpolation
 //! error with their phases. The limit does not know the random numbers and the phase of the

@@ -13,13 +13,6 @@ use crate::model::Trained;
 pub type TwoDimensional<const N: usize> = Inverting<N, BothComponents>;
 
 impl<const N: usize, D: ContourModel<N>> Inverting<N, BothComponents, D> {
-    /// Creates the controller for a machine: the correction enters the loop once the measured
-    /// errors show that it helps; see `controller/trial.rs`. `response_s` is the response time of
-    /// the slowest speed loop, s.
-    pub fn on_trial(trained: D, settings: InvertingSettings, response_s: f64) -> Self {
-        Self::new(trained, settings, Some(response_s))
-    }
-
     /// Creates the controller of the paper, which corrects from the first decision on, whether that
     /// helps or not. It serves to repeat the paper's figures.
     pub fn untried(trained: D, settings: InvertingSettings) -> Self {
@@ -39,19 +32,21 @@ impl<const N: usize> Member<N> for TwoDimensional<N> {
         parameters: InvertingSettings::PARAMETERS,
     };
 
+    /// Creates the controller for a machine. If it tries, the correction enters the loop once the
+    /// measured errors show that it helps; see `controller/trial.rs`.
     fn make(data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
         let model = data.model?;
         let Trained::Contour { net, response_s } = &model.trained else {
             return None;
         };
-        let settings = InvertingSettings::of(model, values);
-        Some(if !data.tries {
-            Self::untried(net.clone(), settings)
-        } else if *response_s > 0.0 {
-            Self::on_trial(net.clone(), settings, *response_s)
+        let response_s = if *response_s > 0.0 {
+            *response_s
         } else {
-            Self::on_trial(net.clone(), settings, UNSTATED_RESPONSE_S)
-        })
+            UNSTATED_RESPONSE_S
+        };
+        let settings = InvertingSettings::of(model, values);
+        let tried_response_s = data.tries.then_some(response_s);
+        Some(Self::new(net.clone(), settings, tried_response_s))
     }
 }
 
