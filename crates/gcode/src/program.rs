@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -34,16 +34,6 @@ impl Program {
             name: name.into(),
             text: String::from_utf8_lossy(text.as_ref()).into(),
         })
-    }
-
-    /// The program that a reader gives, which is kept in memory.
-    ///
-    /// # Errors
-    /// What the reader says.
-    pub fn from_reader(name: impl Into<String>, mut reader: impl Read) -> io::Result<Self> {
-        let mut text = Vec::new();
-        reader.read_to_end(&mut text)?;
-        Ok(Self::from_text(name, text))
     }
 
     /// The program in a file; `-` is the standard input, which is read once and kept. Nothing is
@@ -118,16 +108,17 @@ impl Program {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Read;
+
     use super::*;
 
     #[test]
-    fn text_file_and_reader_give_the_same_steps() {
+    fn text_and_file_give_the_same_steps() {
         let text = "G21 G90 F600\nG1 X10 (\u{e4})\nM2\n";
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), text).unwrap();
         let programs = [
             Program::from_text("part.ngc", text),
-            Program::from_reader("part.ngc", text.as_bytes()).unwrap(),
             Program::in_file(file.path()),
         ];
         let read = |program: &Program| {
@@ -143,9 +134,8 @@ mod tests {
             steps
         };
         assert_eq!(read(&programs[0]), read(&programs[1]));
-        assert_eq!(read(&programs[0]), read(&programs[2]));
         assert_eq!(programs[0].name(), "part.ngc");
-        assert_eq!(programs[2].path(), Some(file.path()));
+        assert_eq!(programs[1].path(), Some(file.path()));
     }
 
     #[test]

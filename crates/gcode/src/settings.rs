@@ -59,7 +59,7 @@ impl Dialect {
     }
 
     /// Returns true if the program is for a Fanuc or Haas lathe.
-    pub const fn is_lathe(self) -> bool {
+    pub(crate) const fn is_lathe(self) -> bool {
         matches!(self, Self::FanucLathe | Self::HaasLathe)
     }
 
@@ -86,10 +86,10 @@ impl Dialect {
 #[error("no dialect is called '{name}'; there are {}", names().join(", "))]
 pub struct UnknownDialect {
     /// Name that the user gave.
-    pub name: String,
+    pub(crate) name: String,
     /// Closest known dialect, if one is close, and how to let the program decide.
     #[help]
-    pub hint: String,
+    pub(crate) hint: String,
 }
 
 impl UnknownDialect {
@@ -183,7 +183,7 @@ impl From<Increment> for String {
 #[diagnostic(help("most controls have 0.001mm, which is 0.0001inch in programs in inches"))]
 pub struct UnknownIncrement {
     /// Increment that the user gave.
-    pub name: String,
+    pub(crate) name: String,
 }
 
 /// Settings of a [`Reader`](crate::Reader).

@@ -14,7 +14,7 @@ use crate::text::read_error::ReadError;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// File as the user named it.
-    pub name: Arc<str>,
+    pub(crate) name: Arc<str>,
     /// Motions.
     pub motions: u64,
     /// Events.
@@ -24,7 +24,7 @@ pub struct Summary {
     /// True where A, B, C, U, V, W or an extruder moves.
     pub moves_others: bool,
     /// First line in which each of A, B, C, U, V and W moves.
-    pub others_move: [Option<u32>; 6],
+    pub(crate) others_move: [Option<u32>; 6],
     /// Length of all feed motions, mm.
     pub feed_mm: f64,
     /// Length of all rapids, mm.

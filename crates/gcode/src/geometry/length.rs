@@ -30,7 +30,7 @@ fn norm(a: [f64; 3], b: [f64; 3]) -> f64 {
 impl Spline {
     /// The point at parameter `u`, by de Boor's algorithm on homogeneous coordinates (C. de Boor,
     /// On calculating with B-splines, 1972).
-    pub fn point_mm(&self, u: f64) -> [f64; 3] {
+    pub(crate) fn point_mm(&self, u: f64) -> [f64; 3] {
         let last = self.control_mm.len() - 1;
         let span = (self.degree..=last)
             .rev()

@@ -21,14 +21,14 @@ pub struct Tool {
     /// Offsets of X Y Z A B C U V W, mm and degrees.
     pub offset: [f64; 9],
     /// Diameter, mm.
-    pub diameter_mm: f64,
+    pub(crate) diameter_mm: f64,
     /// Wear of length and radius, mm, set by `G10 L11` and `L13` on Fanuc and Haas. `offset` and
     /// `diameter_mm` already include it.
-    pub wear_mm: [f64; 2],
+    pub(crate) wear_mm: [f64; 2],
     /// Front angle of a lathe tool, degrees.
-    pub front_angle_deg: f64,
+    pub(crate) front_angle_deg: f64,
     /// Back angle of a lathe tool, degrees.
-    pub back_angle_deg: f64,
+    pub(crate) back_angle_deg: f64,
     /// Orientation of a lathe tool, 0 to 9.
     pub orientation: u8,
     /// Pocket of the changer.
@@ -39,12 +39,12 @@ pub struct Tool {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ToolTable {
     /// Tools by number.
-    pub tools: BTreeMap<u32, Tool>,
+    pub(crate) tools: BTreeMap<u32, Tool>,
 }
 
 impl ToolTable {
     /// The tool with a number.
-    pub fn get(&self, number: u32) -> Option<&Tool> {
+    pub(crate) fn get(&self, number: u32) -> Option<&Tool> {
         self.tools.get(&number)
     }
 
