@@ -105,7 +105,7 @@ pub use plant::{Measurement, Mechanism, Plant};
 pub use reference::{Foot, Reference, Sample};
 pub use simulate::foot::settled_s;
 pub use simulate::uncut::Uncut;
-pub use simulate::{JointError, PlantMaker, RunResult, Stopped, TickTimes};
+pub use simulate::{PlantMaker, RunResult, Stopped};
 pub use trace::csv::{SetpointWriter, TraceWriter};
 pub use trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 pub use watch::{Cancelled, StageSteps, Watch};

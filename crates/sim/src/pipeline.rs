@@ -69,7 +69,7 @@ impl Stages {
     ///
     /// # Errors
     /// Fails if a limit is missing or outside its allowed range.
-    pub fn reference_within<'p>(
+    pub(crate) fn reference_within<'p>(
         self,
         steps: Steps<'p>,
         machine: &Machine,

@@ -64,7 +64,7 @@ pub struct Foot {
     /// True if the motion cuts.
     pub cutting: bool,
     /// Programmed feedrate, mm/s; of a rapid 0.
-    pub programmed_mm_s: f64,
+    pub(crate) programmed_mm_s: f64,
 }
 
 /// The plan of a program, looked up by plan time.
@@ -94,7 +94,7 @@ impl<'p> Reference<'p> {
     }
 
     /// All of the plan, where it was [kept](Plan::keeping) and read to its end.
-    pub fn into_kept(self) -> Option<KeptPlan> {
+    pub(crate) fn into_kept(self) -> Option<KeptPlan> {
         self.plan.into_kept()
     }
 
@@ -154,7 +154,7 @@ impl<'p> Reference<'p> {
     /// The point of the path at arc length `s_mm`, seen from `point_mm`; of what has been read and
     /// not forgotten.
     #[inline]
-    pub fn at_length(&self, point_mm: [f64; 3], s_mm: f64) -> Foot {
+    pub(crate) fn at_length(&self, point_mm: [f64; 3], s_mm: f64) -> Foot {
         self.kept.nearest_along(point_mm, s_mm, s_mm)
     }
 
@@ -167,7 +167,7 @@ impl<'p> Reference<'p> {
 
     /// Start and end of the rest at `tau_s`, in plan time, s: a dwell, or the time that a PLC
     /// takes. `None` if `tau_s` is not in a rest.
-    pub fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
+    pub(crate) fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
         self.read_until(tau_s);
         self.kept.rest(tau_s)
     }

@@ -32,10 +32,10 @@ use crate::reference::{Foot, Reference, Sample};
 use crate::trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
-pub use joints::JointError;
+pub(crate) use joints::JointError;
 use joints::JointErrorMeter;
 use lost_motion::LostMotion;
-pub use tick_times::TickTimes;
+pub(crate) use tick_times::TickTimes;
 use uncut::Uncut;
 
 /// Multiple of the lag of a rapid beyond which the tool counts as lost. A stable loop of gain Kp

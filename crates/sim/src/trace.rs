@@ -113,10 +113,10 @@ pub struct Transition {
     pub change: CorrectionChange,
     /// Axis whose model changed, x, y or z; `None` for a change that is not of a model.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub axis: Option<char>,
+    pub(crate) axis: Option<char>,
     /// Cause, in words; `None` if the change needs no cause.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub cause: Option<&'static str>,
+    pub(crate) cause: Option<&'static str>,
     /// Measured value that was compared with the limit, um; `None` where nothing was compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found_um: Option<f64>,

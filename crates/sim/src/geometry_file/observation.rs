@@ -63,7 +63,7 @@ pub struct MeasuredPlace {
     /// Encoder positions, mm.
     pub at_mm: [f64; 3],
     /// Directions of travel.
-    pub direction: [f64; 3],
+    pub(crate) direction: [f64; 3],
     /// Unit vector, or zero.
     pub along: [f64; 3],
 }

@@ -90,9 +90,9 @@ pub struct Problem {
     /// Column in characters, from 1.
     pub column: usize,
     /// Place in the text.
-    pub span: SourceSpan,
+    pub(crate) span: SourceSpan,
     /// Short label below the place.
-    pub label: &'static str,
+    pub(crate) label: &'static str,
     /// Remedy, where there is one.
     pub hint: Option<String>,
 }
