@@ -24,7 +24,7 @@ use recording::Recording;
 
 /// The generator behind everything random here: the same seed gives the same bits on every
 /// platform.
-pub type Rng = Xoshiro256PlusPlus;
+pub(crate) type Rng = Xoshiro256PlusPlus;
 
 /// Laps that parameters of an axis are found from: six of each radius, a third of them without
 /// offsets. On workshop the standard errors are then below 0.1 % of the inertia and 2 % of the

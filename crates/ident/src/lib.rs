@@ -35,7 +35,7 @@
 //! | Program to cut, and its log on a simulated machine | [`excitation_program`], [`recorded_log`], [`ExciteOptions`], [`ExciteError`] |
 //! | Logs | [`Log`], [`LogAxis`], [`LogFormat`], [`Columns`], [`LogFinding`], [`LogError`], [`Fitness`] |
 //! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`ModelVerdict`], [`SearchBound`] |
-//! | Simulated machine | [`Excitation`], [`Recording`], [`RecordedKnot`], [`Rng`] |
+//! | Simulated machine | [`Excitation`], [`Recording`] |
 //! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
 //! | Models for controllers | [`train_axes`], [`train_contour`], [`axis_statistics`] |
 //! | Model files | [`Model`], [`Origin`], [`exact_block`] |
@@ -80,17 +80,16 @@ mod geometry;
 pub use average::{median_and_spread, quadratic_mean};
 pub use excite::recorded::recorded_log;
 pub use excite::{
-    AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program,
-    next_excitation,
+    AxisExcitation, ExciteError, ExciteOptions, MotionPart, excitation_program, next_excitation,
 };
 pub use geometry::circularity::Circularity;
 pub use geometry::comp_file::{comp_file, geometry_of_tables, sampled_table};
-pub use geometry::fit::{FoundGeometry, FoundGeometryValue, FoundSet, NoGeometry, fit_geometry};
+pub use geometry::fit::{FoundGeometry, fit_geometry};
 pub use geometry::formats::GeometryInput;
 pub use geometry::programs::{BallBarProgram, GridProgram};
 pub use geometry::readings::KnownScrew;
 pub use geometry::simulated::SimulatedBallBar;
-pub use geometry::text::MeasurementError;
+pub use identify::Excitation;
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
 pub use identify::axis_parameters::{
     AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis,
@@ -103,15 +102,13 @@ pub use identify::grey_box::found_axis::{FoundAxis, NumberSource};
 pub use identify::grey_box::free_run_scores::{FreeRunErrors, HORIZONS};
 pub use identify::grey_box::known_value::KnownValue;
 pub use identify::grey_box::search_bound::SearchBound;
-pub use identify::grey_box::terms::{ModelTerm, TermValues};
-pub use identify::grey_box::unseen_motion::UnseenMotion;
+pub use identify::grey_box::terms::ModelTerm;
 pub use identify::grey_box::verdict::ModelVerdict;
 pub use identify::grey_box::{
     FoundMachine, GreyBoxOptions, NotFound, SERVO_MECHANICS, identify_machine, servo_period_s,
 };
-pub use identify::recording::{RecordedKnot, Recording};
-pub use identify::{Excitation, Rng};
-pub use log::columns::{Columns, ColumnsError};
+pub use identify::recording::Recording;
+pub use log::columns::Columns;
 pub use log::error::{Refusal, RefusalReason};
 pub use log::{Fitness, Log, LogAxis, LogError, LogFinding, LogFormat, MAX_AXES, TorqueUnit};
 pub use model::exact::exact_block;

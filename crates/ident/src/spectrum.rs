@@ -100,7 +100,7 @@ pub struct Spectrum {
     /// Mean square in a sample, were it white: at frequencies n / (2 (len - 1)).
     pub power: Vec<f64>,
     /// Number of independent values behind each value of `power`.
-    pub weight_of_value: f64,
+    pub(crate) weight_of_value: f64,
     /// Standard deviation to which the window widens a line, turns a sample.
     pub width: f64,
 }

@@ -16,11 +16,11 @@ use feedwright_sim::{MeasuredSet, RankedLeastSquares, to_four_digits};
 pub struct Circularity {
     /// Circular deviation G, counterclockwise and clockwise; none where a direction was not
     /// measured.
-    pub deviation_um: [Option<f64>; 2],
+    pub(crate) deviation_um: [Option<f64>; 2],
     /// Circular hysteresis H; none where only one direction was measured.
-    pub hysteresis_um: Option<f64>,
+    pub(crate) hysteresis_um: Option<f64>,
     /// Least and greatest radial deviation F; none where the length of the bar is not known.
-    pub radial_um: Option<[f64; 2]>,
+    pub(crate) radial_um: Option<[f64; 2]>,
 }
 
 /// Angles, a degree each.

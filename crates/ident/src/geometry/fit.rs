@@ -63,7 +63,7 @@ pub struct FoundGeometryValue {
     /// Name of the value, such as `scale x`.
     pub name: String,
     /// Its unit.
-    pub unit: &'static str,
+    pub(crate) unit: &'static str,
     /// The value.
     pub value: f64,
     /// Its standard deviation.
@@ -74,9 +74,9 @@ pub struct FoundGeometryValue {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundSet {
     /// Name of the set.
-    pub name: String,
+    pub(crate) name: String,
     /// Values of it.
-    pub rows: usize,
+    pub(crate) rows: usize,
     /// Root mean square of its deviations without the geometry, um.
     pub before_um: f64,
     /// The same with the geometry, um.
@@ -116,7 +116,7 @@ const LEAST_NOISE_UM: f64 = 1e-3;
 /// The geometry of a machine with these screws; an axis without screw is not there.
 ///
 /// # Errors
-/// See [`NoGeometry`].
+/// See `NoGeometry`.
 pub fn fit_geometry(
     sets: Vec<MeasuredSet>,
     screws: [Option<KnownScrew>; 3],

@@ -15,11 +15,11 @@ use thiserror::Error;
 #[diagnostic(code(geometry::measurement))]
 pub struct MeasurementError {
     /// The file.
-    pub file: String,
+    pub(crate) file: String,
     /// Its line, from 1.
-    pub line: usize,
+    pub(crate) line: usize,
     /// Description of the error.
-    pub message: String,
+    pub(crate) message: String,
     /// Remedy.
     #[help]
     pub hint: String,

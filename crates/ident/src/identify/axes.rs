@@ -29,9 +29,9 @@ pub struct TrainedAxes<const N: usize> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisRecordings<const N: usize> {
     /// Recording with offsets, for the parameters: [`Excitation::axis_parameters`].
-    pub parameters: Recording<N>,
+    pub(crate) parameters: Recording<N>,
     /// Recording without offsets, for the statistics: [`Excitation::statistics`].
-    pub statistics: Recording<N>,
+    pub(crate) statistics: Recording<N>,
 }
 
 impl<const N: usize> AxisRecordings<N> {

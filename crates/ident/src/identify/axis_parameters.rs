@@ -74,10 +74,10 @@ pub struct DriveSettings {
     pub kv_nm_s_per_rad: f64,
     /// Torque at which it saturates, N m.
     pub torque_limit_nm: f64,
-    /// Other settings of the drive; its acceleration feedforward is [`Self::fed_kg_m2`].
-    pub drive: DriveParameters,
+    /// Other settings of the drive; its acceleration feedforward is `fed_kg_m2`.
+    pub(crate) drive: DriveParameters,
     /// Torque that it feeds forward for an acceleration of the command, N m s^2/rad.
-    pub fed_kg_m2: f64,
+    pub(crate) fed_kg_m2: f64,
     /// Delays of bus and encoder.
     pub delays: LoopDelays,
     /// True where the position is measured at the table, after the screw.
@@ -268,7 +268,7 @@ pub struct AxisEstimate {
     /// RMS of what is left of the measured position, um.
     pub left_um: f64,
     /// Steps that it took.
-    pub steps: u32,
+    pub(crate) steps: u32,
 }
 
 /// Why nothing was found.

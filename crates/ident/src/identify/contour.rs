@@ -17,7 +17,7 @@ use super::recording::{RecordedKnot, Recording};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Training {
     /// Passes over the samples.
-    pub epochs: u32,
+    pub(crate) epochs: u32,
     /// Step of back-propagation in the first epoch.
     pub step: f64,
     /// Factor on the step from epoch to epoch.

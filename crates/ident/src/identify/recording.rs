@@ -15,7 +15,7 @@ pub struct RecordedKnot<const N: usize> {
     /// Tool, mm.
     pub tool_mm: [f64; N],
     /// Contour error, desired minus actual, mm.
-    pub contour_mm: [f64; N],
+    pub(crate) contour_mm: [f64; N],
 }
 
 /// Commands and measurements of a machine.
@@ -76,7 +76,7 @@ impl<const N: usize> Recording<N> {
 }
 
 /// Serialized form of [`Recording`]: a knot is a row of 3N numbers, in the order of
-/// [`RecordedKnot`].
+/// `RecordedKnot`.
 #[derive(Clone, Serialize, Deserialize)]
 struct StoredRecording {
     axes: usize,

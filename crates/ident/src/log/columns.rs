@@ -22,17 +22,17 @@ pub struct ColumnChoice(pub String);
 
 /// The columns of one axis, as far as they are said.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct AxisChoice {
+pub(crate) struct AxisChoice {
     /// Name of the axis.
-    pub name: String,
+    pub(crate) name: String,
     /// Its command.
     pub command: Option<ColumnChoice>,
     /// Its actual position.
     pub actual: Option<ColumnChoice>,
     /// Its command minus its actual position, in place of the command.
-    pub error: Option<ColumnChoice>,
+    pub(crate) error: Option<ColumnChoice>,
     /// Its torque.
-    pub torque: Option<ColumnChoice>,
+    pub(crate) torque: Option<ColumnChoice>,
 }
 
 /// Assignment of the columns of a log; the rest is guessed.
@@ -41,13 +41,13 @@ pub struct Columns {
     /// Column of the time.
     pub time: Option<ColumnChoice>,
     /// Axes; where there is one, the others of the file are left out.
-    pub axes: Vec<AxisChoice>,
+    pub(crate) axes: Vec<AxisChoice>,
     /// Unit of the positions.
-    pub position_unit: Option<PositionUnit>,
+    pub(crate) position_unit: Option<PositionUnit>,
     /// Unit of the time.
     pub time_unit: Option<TimeUnit>,
     /// Time between samples, s.
-    pub sample_time_s: Option<f64>,
+    pub(crate) sample_time_s: Option<f64>,
 }
 
 /// Error in `--columns`.
@@ -57,7 +57,7 @@ pub struct ColumnsError {
     /// The part of it that is wrong.
     pub item: String,
     /// Description of the error.
-    pub message: String,
+    pub(crate) message: String,
     /// Remedy.
     #[help]
     pub hint: String,

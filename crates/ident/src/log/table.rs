@@ -8,36 +8,36 @@ use super::LogFormat;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LogTable {
     /// Kind of the file.
-    pub format: LogFormat,
+    pub(crate) format: LogFormat,
     /// The columns in the order of the file.
-    pub columns: Vec<LogColumn>,
+    pub(crate) columns: Vec<LogColumn>,
     /// Rows before which samples are known to be missing.
-    pub breaks: Vec<usize>,
+    pub(crate) breaks: Vec<usize>,
     /// Line numbers of the rows.
-    pub lines: LineNumbers,
+    pub(crate) lines: LineNumbers,
     /// Time between rows, s, where the file says so.
-    pub sample_time_s: Option<f64>,
+    pub(crate) sample_time_s: Option<f64>,
     /// Line that states the unit of the positions, from 1, and the unit.
-    pub position_unit: Option<(u64, String)>,
+    pub(crate) position_unit: Option<(u64, String)>,
     /// A last line that is cut off.
-    pub cut_off_line: Option<u64>,
+    pub(crate) cut_off_line: Option<u64>,
     /// Rows that the header of the file announces.
-    pub announced_rows: Option<usize>,
+    pub(crate) announced_rows: Option<usize>,
 }
 
 /// A column.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LogColumn {
     /// Its name in the file; none where it has none.
-    pub name: String,
+    pub(crate) name: String,
     /// Its unit, as the file has it.
-    pub unit: String,
+    pub(crate) unit: String,
     /// The axis that it belongs to, where the file says so.
-    pub axis: Option<String>,
+    pub(crate) axis: Option<String>,
     /// Time between its samples, s, where the file says so of each column.
-    pub sample_time_s: Option<f64>,
+    pub(crate) sample_time_s: Option<f64>,
     /// One value per row; empty if the reader does not need the column.
-    pub values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     /// The first row whose value is no number, and what stands there.
     pub not_a_number: Option<(usize, String)>,
 }

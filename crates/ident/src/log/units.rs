@@ -42,7 +42,7 @@ impl PositionUnit {
 
     /// Finds a unit by the name that somebody gives it. A micro sign that is no UTF-8 has become
     /// U+FFFD.
-    pub fn from_name(name: &str) -> Option<Self> {
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "m" | "meter" | "metre" | "meters" | "metres" => Some(Self::Metre),
             "mm" | "millimeter" | "millimetre" | "millimeters" | "millimetres" => {
@@ -97,7 +97,7 @@ impl TimeUnit {
     pub(super) const KNOWN: &'static str = "s, ms, us, ns or samples";
 
     /// Finds a unit by the name that somebody gives it.
-    pub fn from_name(name: &str) -> Option<Self> {
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "s" | "sec" | "second" | "seconds" => Some(Self::Second),
             "ms" | "msec" | "millisecond" | "milliseconds" => Some(Self::Millisecond),
@@ -110,7 +110,7 @@ impl TimeUnit {
     }
 
     /// Seconds in one of it; a sample takes as long as is said.
-    pub const fn in_s(self, sample_time_s: f64) -> f64 {
+    pub(crate) const fn in_s(self, sample_time_s: f64) -> f64 {
         match self {
             Self::Second => 1.0,
             Self::Millisecond => 1e-3,

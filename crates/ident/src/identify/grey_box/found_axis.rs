@@ -106,13 +106,13 @@ pub struct ResolvedModel {
     /// Values of it.
     pub values: TermValues,
     /// Half of the interval of 90 % of those that have one.
-    pub half_intervals: Vec<(ModelTerm, f64)>,
+    pub(crate) half_intervals: Vec<(ModelTerm, f64)>,
     /// Mechanics from a torque column; `None` where the window was given.
     pub torque: Option<TorqueColumn>,
     /// Drive from the torque column.
-    pub drive: Option<DriveColumn>,
+    pub(crate) drive: Option<DriveColumn>,
     /// RMS that its free run leaves of the fitted samples, um.
-    pub fit_um: f64,
+    pub(crate) fit_um: f64,
 }
 
 impl ResolvedModel {

@@ -62,7 +62,7 @@ impl AxisScores {
     }
 
     /// The same without signs.
-    pub fn best_linear(&self) -> FreeRunErrors {
+    pub(crate) fn best_linear(&self) -> FreeRunErrors {
         Self::least(self.arx.iter().filter(|arx| !arx.0.signs).map(|arx| arx.1))
     }
 

@@ -21,9 +21,9 @@ use crate::average::rms;
 #[derive(Debug, Clone, PartialEq)]
 pub struct GainChange {
     /// Kp, 1/s, where it is another one.
-    pub kp_1_s: Option<f64>,
+    pub(crate) kp_1_s: Option<f64>,
     /// Velocity feedforward, where it is another one.
-    pub velocity_feedforward: Option<f64>,
+    pub(crate) velocity_feedforward: Option<f64>,
     /// RMS of the following error by formula, um.
     pub predicted_um: f64,
     /// RMS of the following error of a free run, um.

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownValue {
     /// Value.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Standard deviation.
     pub spread: f64,
 }

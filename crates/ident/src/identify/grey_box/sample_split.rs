@@ -36,7 +36,7 @@ const SETTLING_PART: f64 = 0.1;
 
 impl SampleSplit {
     /// Blocks that take turns.
-    pub fn by_motion(records: &[AxisRecord<'_>]) -> Self {
+    pub(crate) fn by_motion(records: &[AxisRecord<'_>]) -> Self {
         let motions: Vec<Vec<i8>> = records.iter().map(motion).collect();
         let settled = settled(records);
         let mut best: Option<(f64, Self)> = None;
@@ -78,7 +78,7 @@ impl SampleSplit {
     }
 
     /// Splits by times of the record, s.
-    pub fn by_times(
+    pub(crate) fn by_times(
         records: &[AxisRecord<'_>],
         time_s: &[f64],
         fit: Range<f64>,

@@ -100,7 +100,7 @@ pub(super) struct TermRow {
 
 impl ModelTerm {
     /// All, in the order of `TermValues`.
-    pub const ALL: [Self; TERMS] = [
+    pub(crate) const ALL: [Self; TERMS] = [
         Self::LoopGain,
         Self::Damping,
         Self::Coulomb,
@@ -282,7 +282,7 @@ impl TermValues {
 
     /// Returns the values with another value of one term, held within its range.
     #[must_use]
-    pub fn with(mut self, term: ModelTerm, value: f64) -> Self {
+    pub(crate) fn with(mut self, term: ModelTerm, value: f64) -> Self {
         let [least, most] = term.row().range;
         self.0[term as usize] = value.clamp(least, most);
         self

@@ -23,23 +23,23 @@ use super::terms::{ModelTerm, TermValues};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueColumn {
     /// J / g: unit of the column for an acceleration of 1 mm/s2.
-    pub units_per_mm_s2: f64,
+    pub(crate) units_per_mm_s2: f64,
     /// Its standard error.
-    pub units_error: f64,
+    pub(crate) units_error: f64,
     /// B / J, 1/s.
-    pub viscous_1_s: f64,
+    pub(crate) viscous_1_s: f64,
     /// Its standard error, 1/s.
-    pub viscous_error_1_s: f64,
+    pub(crate) viscous_error_1_s: f64,
     /// Fc / J, mm/s2.
-    pub coulomb_mm_s2: f64,
+    pub(crate) coulomb_mm_s2: f64,
     /// Its standard error, mm/s2.
-    pub coulomb_error_mm_s2: f64,
+    pub(crate) coulomb_error_mm_s2: f64,
     /// Offset over J, mm/s2.
     pub offset_mm_s2: f64,
     /// Part of the variance of the column that is explained.
-    pub explained: f64,
+    pub(crate) explained: f64,
     /// Samples by which the column is later than the motion.
-    pub late_samples: i32,
+    pub(crate) late_samples: i32,
 }
 
 /// Delays of a column that are tried, samples; negative is early.
@@ -75,15 +75,15 @@ impl TorqueColumn {
 /// u(k) = p e(k) - q (y(k) - y(k - n)) / (n Ts) + o
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DriveColumn {
+pub(crate) struct DriveColumn {
     /// Kp Kv / J, 1/s2.
-    pub loop_gain_1_s2: f64,
+    pub(crate) loop_gain_1_s2: f64,
     /// Kv / J, 1/s.
-    pub speed_gain_1_s: f64,
+    pub(crate) speed_gain_1_s: f64,
     /// Samples over which the drive takes the speed.
-    pub window_samples: usize,
+    pub(crate) window_samples: usize,
     /// Part of the variance of the column that is explained.
-    pub explained: f64,
+    pub(crate) explained: f64,
 }
 
 /// Windows of the speed that are tried, samples.
