@@ -32,10 +32,10 @@ pub enum GeometryChoice {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedGeometry {
     /// Name in messages.
-    pub name: String,
+    pub(crate) name: String,
     /// Content of the file.
     #[serde(with = "text")]
-    pub geometry: GeometryFile,
+    pub(crate) geometry: GeometryFile,
 }
 
 /// A geometry as the text of its file.
@@ -72,8 +72,8 @@ impl GeometryChoice {
     /// positions, mm. With a geometry file, it is where the tool of the machine is, too.
     ///
     /// # Errors
-    /// As [`Self::on_any_part`], and a geometry that was not measured where the part is.
-    pub fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
+    /// As `Self::on_any_part`, and a geometry that was not measured where the part is.
+    pub(crate) fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
         let compensating = self.on_any_part(machine)?;
         if let Self::File(file) | Self::InProgram(file) = self {
             file.geometry.covers(machine.axis_count(), box_mm)?;
@@ -86,7 +86,7 @@ impl GeometryChoice {
     /// # Errors
     /// A geometry that is out of its range, does not suit the machine, or does not pass its own
     /// check.
-    pub fn on_any_part(&self, machine: &Machine) -> Result<Machine, JobError> {
+    pub(crate) fn on_any_part(&self, machine: &Machine) -> Result<Machine, JobError> {
         Ok(match self {
             Self::Off => Machine {
                 compensated: None,

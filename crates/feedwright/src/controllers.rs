@@ -24,14 +24,15 @@ use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::{Deserialize, Serialize};
 
 pub use make::offset_bounds;
-pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
-pub use recorded::RecordedValues;
+pub use parameters::{Parameter, Setting, Values};
+pub(crate) use recorded::RecordedValues;
 pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
 use rows::{
     ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP,
     RHO,
 };
-pub use setup::{CutsUncorrected, ModelMisfit, Setup};
+pub(crate) use setup::CutsUncorrected;
+pub use setup::{ModelMisfit, Setup};
 
 /// The stage of all that a first cut on a machine waits for.
 pub(crate) fn identifying<'a>(machine: &Machine, watch: &'a dyn Watch) -> StageSteps<'a> {
@@ -80,7 +81,7 @@ pub enum Knows {
 }
 
 /// Makes a controller from a setup and the values of its parameters.
-pub type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
+pub(crate) type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
 
 /// A row of a table of controllers: name, summary, source, what it knows, laps, parameters, and how
 /// it is made for N axes from a [`Setup`] and the values of its parameters.

@@ -105,14 +105,14 @@ use crate::measured::MeasuredLog;
 #[cfg(feature = "files")]
 use crate::store::{Store, content_key};
 use exported::ExportedCut;
+pub use feed_overrides::OverrideVerdict;
 use feed_overrides::override_note;
-pub use feed_overrides::{OverrideFigures, OverrideVerdict};
-pub use file_prior::{AssumedValue, FileAssumption};
+#[cfg(feature = "command")]
+pub(crate) use file_prior::FileAssumption;
 use file_prior::{FILE_ERROR, FileModel};
-pub use learned::{
-    CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError,
-    PredictedCut,
-};
+pub use learned::PredictedCut;
+#[cfg(feature = "command")]
+pub(crate) use learned::{CutProgram, LearnedOutcome, LearnedValue};
 use learned::{LearnedMachine, LoggedProgram};
 pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
@@ -124,7 +124,7 @@ use rounds::{RoundsResult, steps_of};
 use source::SourceProgram;
 use stretches::{ProgramPart, assembled, parts};
 pub use target::{TARGETS, TargetControl};
-pub use unchanged::UnchangedStretch;
+pub(crate) use unchanged::UnchangedStretch;
 use unchanged::unchanged_stretches;
 use verified::{TextComparison, TextFault};
 use workers::Workers;
@@ -134,15 +134,15 @@ use workers::Workers;
 #[non_exhaustive]
 pub struct CorrectJob {
     /// The G-code program.
-    pub program: Program,
+    pub(crate) program: Program,
     /// The machine that cuts it.
     pub machine: Machine,
     /// Machine that the correction assumes; none means `machine` itself.
     pub believed: Option<Machine>,
     /// The geometry that the program compensates.
-    pub compensation: GeometryChoice,
+    pub(crate) compensation: GeometryChoice,
     /// The control that the corrected program is for.
-    pub target: &'static TargetControl,
+    pub(crate) target: &'static TargetControl,
     /// Replaces every programmed feedrate, mm/s.
     pub feed_mm_s: Option<f64>,
     /// Settings of the reader.
@@ -497,7 +497,7 @@ impl CorrectJob {
 
     /// Returns the folder of finished pieces, if there are any to continue with.
     #[cfg(feature = "files")]
-    pub fn kept_pieces(&self) -> Option<&Path> {
+    pub(crate) fn kept_pieces(&self) -> Option<&Path> {
         let has_pieces = |folder: &&Path| {
             let files = Store::new(folder.to_path_buf()).files();
             files.is_ok_and(|files| !files.is_empty())

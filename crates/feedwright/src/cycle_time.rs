@@ -53,11 +53,11 @@ const MOST_PIECES: usize = 64;
 
 /// Time of one tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ToolTime {
+pub(crate) struct ToolTime {
     /// Its number; 0 before the first tool change.
     pub tool: u32,
     /// Time of motion and rests with the tool, s.
-    pub time_s: f64,
+    pub(crate) time_s: f64,
 }
 
 /// Time of one line of the program.
@@ -88,7 +88,7 @@ pub struct BindingShare {
     /// Name of the limit, such as `feedrate`, `x jerk`, `tolerance`.
     pub limit: String,
     /// Part of the moving time, 0 to 1; limits bind together, so parts do not add up to 1.
-    pub share: f64,
+    pub(crate) share: f64,
 }
 
 /// Cycle time of a program, its parts, and the limits that bind.
@@ -115,9 +115,9 @@ pub struct CycleTime {
     /// Largest distance of the planned motion from the programmed path, um.
     pub largest_deviation_um: f64,
     /// Time of each tool, in the order of use.
-    pub tools: Vec<ToolTime>,
+    pub(crate) tools: Vec<ToolTime>,
     /// Part of the cutting time in which the planned speed is below 0.8 of the programmed feedrate.
-    pub slow_share: f64,
+    pub(crate) slow_share: f64,
     /// Limits that bind, the most frequent first; limits that never bind are left out.
     pub binding: Vec<BindingShare>,
     /// Time of each line in order, if requested.
@@ -125,7 +125,7 @@ pub struct CycleTime {
     pub lines: Vec<LineTime>,
     /// Limits that bind along the path.
     #[serde(skip)]
-    pub along: BindingAlong,
+    pub(crate) along: BindingAlong,
 }
 
 /// Returns the names of limits, in the order in which they are counted everywhere.

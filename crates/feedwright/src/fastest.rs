@@ -39,7 +39,7 @@ use thiserror::Error;
 use crate::cycle_time::{CycleTime, cycle_time_within};
 use cut_places::CutPlaces;
 use path_grid::PathGrid;
-pub use path_share::{TolerancePlan, plan_within};
+pub(crate) use path_share::{TolerancePlan, plan_within};
 use remaining_error::RemainingError;
 use tightening::{LOWEST_MM_S, Tightening};
 

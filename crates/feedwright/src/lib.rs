@@ -31,7 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A program comes from a text, a reader or a file ([`gcode::Program`]), a machine from a name or
+//! A program comes from a text or a file ([`gcode::Program`]), a machine from a name or
 //! a text, and the rows go to [`sim::Sink`]s. Progress, cancellation and the clock are a
 //! [`sim::Watch`]; `&()` has none of them. To make a corrected program for a control without
 //! feedback, set [`Job::target`], or run a [`CorrectJob`] alone.
@@ -42,7 +42,7 @@
 //! |---|---|
 //! | Predict and compare | [`Job`], [`JobOutcome`], [`JobError`] |
 //! | Corrected program for another control | [`CorrectJob`], [`CorrectOutcome`], [`TARGETS`] |
-//! | Feedrate that holds a tolerance | [`AdviseJob`], [`Advice`], [`fastest()`], [`FastestPlan`], [`plan_within`], [`TolerancePlan`] |
+//! | Feedrate that holds a tolerance | [`AdviseJob`], [`Advice`], [`fastest()`], [`FastestPlan`] |
 //! | Cycle time | [`cycle_time()`], [`CycleTime`] |
 //! | Real machine, from a log | [`LogJob`], [`LogIdentified`], [`measured()`] |
 //! | Controllers | [`CONTROLLERS`], [`Entry`], [`Setup`], [`Make`], [`Choices`], [`Setting`], [`controller!`] |
@@ -122,52 +122,43 @@ mod linuxcnc_setup;
 #[cfg(feature = "command")]
 pub mod command;
 
-pub use compensation::{GeometryChoice, NamedGeometry};
+pub use compensation::GeometryChoice;
 pub use controllers::{
-    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry,
-    FEEDFORWARD, FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit,
-    Parameter, ParameterKind, RecordedValues, Setting, SettingError, Setup, TWO_DIMENSIONAL,
-    UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
+    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, Entry, FEEDFORWARD,
+    FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, ModelMisfit, Parameter, Setting,
+    Setup, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
 };
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{
-    AssumedValue, CorrectJob, CorrectOutcome, CutProgram, FileAssumption, LearnError, LearnedLog,
-    LearnedOutcome, LearnedValue, ModelValue, OverrideFigures, OverrideVerdict, PlaceError,
-    PredictedCut, TARGETS, TargetControl, UnchangedStretch, deterministic,
+    CorrectJob, CorrectOutcome, OverrideVerdict, PredictedCut, TARGETS, TargetControl,
+    deterministic,
 };
-pub use cycle_time::{
-    CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within,
-};
-pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
+pub use cycle_time::{CycleTime, CycleTimeOptions, cycle_time, cycle_time_by, cycle_time_within};
+pub use fastest::{FastestError, FastestPlan, fastest};
 pub use identifier_cache::identified;
 pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome, MEASURED};
 #[cfg(feature = "files")]
-pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
+pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError};
 pub use log_job::{
-    LogIdentified, LogJob, LogJobError, UpdateError, following_figure, informative, machine_text,
-    updated_text, write_json, write_page,
+    LogIdentified, LogJob, LogJobError, following_figure, informative, machine_text, updated_text,
+    write_json, write_page,
 };
 pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
-pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
-pub use recorded_model::{
-    RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model,
-};
+pub use output::{OutputError, OutputFile, OutputFiles};
+pub use recorded_model::{built_in_lines, fitting_machines, recorded_machine, take_recorded_model};
 pub use report::figure::{
-    COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page,
-    write_figure_part,
+    COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, write_figure_page,
 };
-pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, harm};
+pub use report::harm::{CutErrors, ErrorChange, MAX_UM, RMS_UM, UNCUT_UM, harm};
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{
-    Assumptions, Band, BandErrors, CommandShare, CommandShares, CompensatedGeometry, DrawnLimits,
-    DriveLimits, ErrorSpectrum, FullCircle, Histogram, LimitBand, ModelKnowledge, PageUnits,
-    ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
-    SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data,
-    write_html_in,
+    Assumptions, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, LimitBand, PageUnits,
+    ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, Statistics,
+    TimelineEvent, write_html, write_html_data, write_html_in,
 };
 pub use results_format::RESULTS_FORMAT;
 pub use store::{KeptTexts, keep_in, key_of};

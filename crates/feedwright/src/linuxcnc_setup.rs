@@ -68,15 +68,15 @@ pub struct LinuxcncSetup {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinuxcncWiring {
     /// Findings in plain words; each line stands alone.
-    pub findings: Vec<String>,
+    pub(crate) findings: Vec<String>,
     /// Reasons why the configuration is not wired, each with its remedy; empty if it is wired.
     pub refusals: Vec<String>,
     /// Pins of hardware that the copy disconnects, because a simulated machine stands in for it.
-    pub disconnected: Vec<String>,
+    pub(crate) disconnected: Vec<String>,
     /// Changes that the configuration needs before the correction is enabled.
     pub changes: Vec<String>,
     /// Next steps, with the exact commands.
-    pub steps: Vec<String>,
+    pub(crate) steps: Vec<String>,
     /// The files that were written.
     pub written: Vec<PathBuf>,
 }
@@ -88,7 +88,7 @@ impl LinuxcncWiring {
     }
 
     /// All of it, as a terminal shows it.
-    pub fn text(&self, wrapped: impl Fn(&str) -> String) -> String {
+    pub(crate) fn text(&self, wrapped: impl Fn(&str) -> String) -> String {
         let mut text = String::new();
         let mut part = |title: &str, lines: &[String]| {
             if !lines.is_empty() {

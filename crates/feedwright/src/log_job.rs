@@ -29,7 +29,7 @@ use thiserror::Error;
 pub use json::write as write_json;
 pub use machine_text::machine_text;
 pub use page::{following as following_figure, write as write_page};
-pub use update::{UpdateError, updated_text};
+pub use update::updated_text;
 
 /// Options of an identification from a log.
 #[derive(Debug, Clone, Default, PartialEq)]

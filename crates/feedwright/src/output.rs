@@ -14,7 +14,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-pub use error::{FileOperation, OutputError};
+pub(crate) use error::FileOperation;
+pub use error::OutputError;
 use feedwright_sim::Watch;
 use part_files::PartFile;
 pub(crate) use part_files::remove_abandoned;
@@ -68,7 +69,7 @@ impl OutputFiles {
     ///
     /// # Errors
     /// Fails as [`Self::start`] does.
-    pub fn start_wanted(
+    pub(crate) fn start_wanted(
         &mut self,
         path: Option<impl AsRef<Path>>,
     ) -> Result<Option<OutputFile>, OutputError> {
@@ -140,7 +141,7 @@ impl OutputFile {
     }
 
     /// Returns the final path of the file, as it was given.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.shown
     }
 

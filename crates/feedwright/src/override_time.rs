@@ -26,33 +26,33 @@ pub(crate) struct OperatorRequest {
     /// Override of feeds, 1 for none, up to [`MOST_OVERRIDE`](feedwright_plan::MOST_OVERRIDE).
     pub override_of_feeds: f64,
     /// Time at which the feed hold is pressed, s.
-    pub hold_at_s: Option<f64>,
+    pub(crate) hold_at_s: Option<f64>,
 }
 
 /// A stop by feed hold.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct HoldStop {
     /// Time at which the feed hold was pressed, s.
-    pub at_s: f64,
+    pub(crate) at_s: f64,
     /// Time from the feed hold until the tool rests, s.
     pub stops_in_s: f64,
     /// Way of the tool along the path until it rests, mm.
-    pub way_mm: f64,
+    pub(crate) way_mm: f64,
     /// Least possible way with the limits of each axis by itself, mm.
     pub least_mm: f64,
     /// Position at rest, mm.
-    pub position_mm: [f64; 3],
+    pub(crate) position_mm: [f64; 3],
 }
 
 /// Result of moving along a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct OverrideTime {
     /// Time until the program ends or the tool rests after the hold, s.
-    pub time_s: f64,
+    pub(crate) time_s: f64,
     /// Time of the whole plan without override and hold, s.
     pub plan_s: f64,
     /// Largest ratio of a velocity, acceleration or jerk to its limit.
-    pub largest_violation: f64,
+    pub(crate) largest_violation: f64,
     /// The stop, if a hold was requested before the end.
     pub hold: Option<HoldStop>,
 }

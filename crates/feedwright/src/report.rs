@@ -30,20 +30,23 @@ mod assumptions;
 mod band;
 mod compensated;
 
-pub use assumptions::{Assumptions, ModelKnowledge};
-pub use band::{Band, BandErrors};
+pub use assumptions::Assumptions;
+pub(crate) use assumptions::ModelKnowledge;
+pub(crate) use band::{Band, BandErrors};
 pub use circles::{FullCircle, Roundness};
 pub(crate) use circles::{RadialDeviations, full_circles};
 pub use compensated::CompensatedGeometry;
-pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
-pub use histogram::Histogram;
+pub use error_spectrum::ErrorSpectrum;
+pub(crate) use error_spectrum::SpectrumBand;
+pub(crate) use histogram::Histogram;
 pub use html::{write_html, write_html_data, write_html_in};
 pub use limit_band::LimitBand;
 pub use page_units::PageUnits;
-pub use series::{Series, SeriesPoint};
+pub use series::Series;
 pub use statistics::Statistics;
-pub use summary::{CommandShare, CommandShares, DriveLimits, RunFacts, RunSummary};
-pub use worst::WorstPlace;
+pub(crate) use summary::{CommandShare, CommandShares, DriveLimits};
+pub use summary::{RunFacts, RunSummary};
+pub(crate) use worst::WorstPlace;
 
 #[cfg(feature = "command")]
 pub(crate) use feedwright_sim::CorrectionChange;

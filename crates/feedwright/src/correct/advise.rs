@@ -44,9 +44,9 @@ pub struct AdviseJob {
     /// Settings of the controller.
     pub choices: Choices,
     /// The geometry that is compensated, in the corrected program and in the cut with feedback.
-    pub compensation: GeometryChoice,
+    pub(crate) compensation: GeometryChoice,
     /// Largest contour error, um.
-    pub tolerance_um: f64,
+    pub(crate) tolerance_um: f64,
     /// Settings of the reader.
     pub reader: Settings,
     /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact.
@@ -79,7 +79,7 @@ pub struct FeedCut {
     /// Machining time, s.
     pub time_s: f64,
     /// Quadratic mean of the RMS errors over the cuts, um.
-    pub rms_um: f64,
+    pub(crate) rms_um: f64,
     /// Largest error of all cuts, um.
     pub max_um: f64,
 }
@@ -106,7 +106,7 @@ pub struct WayAdvice {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NearestCut {
     /// Factor, time and errors of the cut.
-    pub cut: FeedCut,
+    pub(crate) cut: FeedCut,
     /// First and last line of the stretch with the largest error.
     pub lines: [u32; 2],
     /// Part of that stretch with the largest error.
@@ -114,7 +114,7 @@ pub struct NearestCut {
     /// The fastest factor that holds the tolerance away from the ends of the stretches, where the
     /// tool comes from rest or stops.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub beside_ends: Option<FeedCut>,
+    pub(crate) beside_ends: Option<FeedCut>,
 }
 
 /// A stretch without a corner, and the feedrates at which it holds the tolerance.
@@ -123,37 +123,37 @@ pub struct StretchAdvice {
     /// First and last line.
     pub lines: [u32; 2],
     /// Largest programmed feedrate, mm/s.
-    pub feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
     /// Largest feedrate that holds the tolerance, mm/s, in each of [`WAYS`]; none if the smallest
     /// feedrate that was cut does not hold it.
     pub holds_mm_s: [Option<f64>; 3],
     /// The feedrate that comes nearest to the tolerance, for each way in which no feedrate holds
     /// it.
-    pub nearest: [Option<NearestFeed>; 3],
+    pub(crate) nearest: [Option<NearestFeed>; 3],
 }
 
 /// The feedrate of a stretch that comes nearest to the tolerance, if no feedrate holds it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct NearestFeed {
+pub(crate) struct NearestFeed {
     /// Smallest of the largest errors of all its cuts, um.
-    pub max_um: f64,
+    pub(crate) max_um: f64,
     /// Part of the stretch with that error.
-    pub place: ErrorPlace,
+    pub(crate) place: ErrorPlace,
     /// Largest feedrate that holds the tolerance away from the ends of the stretch, mm/s.
-    pub beside_ends_mm_s: Option<f64>,
+    pub(crate) beside_ends_mm_s: Option<f64>,
 }
 
 /// Feedrates that hold the tolerance, in every way and for every stretch.
 #[derive(Debug, Clone, Serialize)]
 pub struct Advice {
     /// Name of the control that cuts without feedback.
-    pub control: &'static str,
+    pub(crate) control: &'static str,
     /// Name of the planner that stands for it.
-    pub planner: &'static str,
+    pub(crate) planner: &'static str,
     /// Name of the controller.
-    pub controller: &'static str,
+    pub(crate) controller: &'static str,
     /// The tolerance, um.
-    pub tolerance_um: f64,
+    pub(crate) tolerance_um: f64,
     /// Least and largest programmed feedrate, mm/s.
     pub programmed_mm_s: [f64; 2],
     /// One for each of `WAYS`.
@@ -307,7 +307,7 @@ impl AdviseJob {
 
 impl CutWay {
     /// Returns the name of the way; for a cut with a controller, the name of the controller.
-    pub const fn name(self, controller: &'static str) -> &'static str {
+    pub(crate) const fn name(self, controller: &'static str) -> &'static str {
         match self {
             Self::Uncorrected => "uncorrected",
             Self::Corrected => "corrected",

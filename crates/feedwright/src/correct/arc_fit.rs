@@ -56,7 +56,7 @@ pub struct FitMotion {
     pub start_mm: Vector,
     pub end_mm: Vector,
     pub shape: Shape,
-    pub feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
 }
 
 /// An arc or a line of the plane, with its rise.

@@ -43,22 +43,22 @@ const SPEED_LOOP_COLUMNS: [usize; 3] = [5, 6, 7];
 
 /// A value that counts as equal in all axes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AssumedValue {
+pub(crate) struct AssumedValue {
     /// Name of the value.
-    pub value: &'static str,
+    pub(crate) value: &'static str,
     /// Values in the machine file, axis by axis.
-    pub file: Vec<f64>,
+    pub(crate) file: Vec<f64>,
     /// Assumed values, axis by axis.
-    pub assumed: Vec<f64>,
+    pub(crate) assumed: Vec<f64>,
 }
 
 /// Assumptions of a correction about the machine, beside its file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FileAssumption {
     /// Standard deviation of each value of the machine file, as a fraction of it.
-    pub file_error: f64,
+    pub(crate) file_error: f64,
     /// Values that are not the values of the file.
-    pub values: Vec<AssumedValue>,
+    pub(crate) values: Vec<AssumedValue>,
     /// Values in which the axes differ by more than chance.
     pub different: Vec<&'static str>,
 }

@@ -36,13 +36,13 @@ use serde::Serialize;
 
 use super::nominal::deterministic;
 use crate::measured::MeasuredLog;
-pub use error::LearnError;
-pub use model_fit::{LearnedValue, ModelValue};
+pub(crate) use error::LearnError;
+pub(crate) use model_fit::LearnedValue;
 use model_fit::{ModelFit, at, fit, followed, noise_of};
-pub use part_record::CutProgram;
+pub(crate) use part_record::CutProgram;
 use part_record::PartRecord;
 pub(super) use place_error::PathTrack;
-pub use place_error::PlaceError;
+pub(crate) use place_error::PlaceError;
 use repeats::repeating;
 
 /// Seed of the sample of noise.
@@ -59,26 +59,26 @@ const SAME_TIME: f64 = 0.02;
 
 /// Source and content of one log.
 #[derive(Debug, Clone, Serialize)]
-pub struct LearnedLog {
+pub(crate) struct LearnedLog {
     /// The log.
-    pub log: String,
+    pub(crate) log: String,
     /// Program that was cut.
-    pub program: CutProgram,
+    pub(crate) program: CutProgram,
     /// RMS distance of its command from the original program, um.
     pub off_um: f64,
     /// Time between samples, s.
-    pub sample_time_s: f64,
+    pub(crate) sample_time_s: f64,
     /// Duration of the cut, s.
-    pub time_s: f64,
+    pub(crate) time_s: f64,
     /// Time that the original is planned to take, s.
     pub planned_s: f64,
     /// Measured RMS contour error, um.
-    pub rms_um: f64,
+    pub(crate) rms_um: f64,
     /// Largest measured contour error, um.
-    pub max_um: f64,
+    pub(crate) max_um: f64,
     /// RMS distance across the path between the model of the machine file and the measured
     /// position, um.
-    pub model_missed_um: f64,
+    pub(crate) model_missed_um: f64,
     /// The same distance with the values that the logs show, um.
     pub missed_um: f64,
 }
@@ -91,20 +91,20 @@ pub struct PredictedCut {
     /// Band of the RMS contour error, um.
     pub band_um: [f64; 2],
     /// Upper end of the part that repeats from cut to cut, um.
-    pub repeats_um: f64,
+    pub(crate) repeats_um: f64,
     /// Largest contour error, um.
-    pub max_um: f64,
+    pub(crate) max_um: f64,
 }
 
 /// Result of learning from logs.
 #[derive(Debug, Clone, Serialize)]
 pub struct LearnedOutcome {
     /// The logs, in their order.
-    pub logs: Vec<LearnedLog>,
+    pub(crate) logs: Vec<LearnedLog>,
     /// Values of the model.
-    pub values: Vec<LearnedValue>,
+    pub(crate) values: Vec<LearnedValue>,
     /// RMS across the path of the error that repeats beside the model and is corrected, um.
-    pub repeats_um: f64,
+    pub(crate) repeats_um: f64,
     /// RMS across the path of the error that does not repeat, um.
     pub rest_um: f64,
     /// The next cut, where a program was written.

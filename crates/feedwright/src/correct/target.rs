@@ -19,7 +19,7 @@ pub struct TargetControl {
     pub planner: &'static str,
     /// Way in which blocks of a corrected stretch meet; none means as in the program, but without
     /// exact stops.
-    pub corner: Option<Corner>,
+    pub(crate) corner: Option<Corner>,
     /// Largest number of characters in a line.
     pub columns: usize,
     /// Decimals of a coordinate in mm.

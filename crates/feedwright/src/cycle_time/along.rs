@@ -18,23 +18,23 @@ pub(crate) const LIMITS: usize = 14;
 
 /// A stretch of the motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct BindingStretch {
+pub(crate) struct BindingStretch {
     /// Duration of the stretch, s; rests are left out.
-    pub duration_s: f64,
+    pub(crate) duration_s: f64,
     /// Arc length of the programmed path at its end, mm.
-    pub to_mm: f64,
+    pub(crate) to_mm: f64,
     /// Way of the tool in the stretch, mm.
-    pub way_mm: f64,
+    pub(crate) way_mm: f64,
     /// Lines of the program at its start and its end.
-    pub lines: [u32; 2],
+    pub(crate) lines: [u32; 2],
     /// Time in which each limit binds, s, in the order of [`super::limit_names`].
-    pub bound_s: [f64; LIMITS],
+    pub(crate) bound_s: [f64; LIMITS],
 }
 
 impl BindingStretch {
     /// Merges this stretch with the next one.
     #[must_use]
-    pub fn merged(&self, next: &Self) -> Self {
+    pub(crate) fn merged(&self, next: &Self) -> Self {
         Self {
             duration_s: self.duration_s + next.duration_s,
             to_mm: next.to_mm,
@@ -45,7 +45,8 @@ impl BindingStretch {
     }
 
     /// Returns the limit that binds for the longest time, if any binds.
-    pub fn longest(&self) -> Option<usize> {
+    #[cfg(feature = "command")]
+    pub(crate) fn longest(&self) -> Option<usize> {
         let longest = (0..LIMITS).max_by(|&a, &b| self.bound_s[a].total_cmp(&self.bound_s[b]));
         longest.filter(|&limit| self.bound_s[limit] > 0.0)
     }
@@ -53,7 +54,7 @@ impl BindingStretch {
 
 /// The stretches of a motion in order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BindingAlong {
+pub(crate) struct BindingAlong {
     stretches: Vec<BindingStretch>,
     stretch_s: f64,
 }
@@ -69,12 +70,12 @@ impl Default for BindingAlong {
 
 impl BindingAlong {
     /// Returns the stretches in the order of time.
-    pub fn stretches(&self) -> &[BindingStretch] {
+    pub(crate) fn stretches(&self) -> &[BindingStretch] {
         &self.stretches
     }
 
     /// Returns the stretches, merged into at most `parts` of about equal time.
-    pub fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
+    pub(crate) fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
         let each = self.stretches.len().div_ceil(parts.max(1)).max(1);
         let merged = |chunk: &[BindingStretch]| {
             chunk

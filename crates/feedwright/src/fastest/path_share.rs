@@ -24,11 +24,9 @@ const SPARE: f64 = 0.01;
 #[derive(Debug, Clone)]
 pub struct TolerancePlan {
     /// The machine with the tolerance of the path.
-    pub machine: Machine,
+    pub(crate) machine: Machine,
     /// Tolerance of the path, um.
-    pub path_um: f64,
-    /// Largest distance of the tool from the path, um.
-    pub largest_um: f64,
+    pub(crate) path_um: f64,
 }
 
 /// Shares a tolerance of the tool between the planned path and the predicted error of the machine:
@@ -38,7 +36,7 @@ pub struct TolerancePlan {
 ///
 /// # Errors
 /// A run that does not come to its end.
-pub fn plan_within<'p, const N: usize>(
+pub(crate) fn plan_within<'p, const N: usize>(
     machine: &Machine,
     tolerance_um: f64,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
@@ -67,6 +65,5 @@ pub fn plan_within<'p, const N: usize>(
     Ok(search.best.as_ref().map(|cut| TolerancePlan {
         machine: search.planned(cut.share),
         path_um: cut.share * tolerance_um,
-        largest_um: cut.error_um,
     }))
 }

@@ -48,7 +48,7 @@ pub enum ModelKnowledge {
 
 impl Assumptions {
     /// Returns a sentence on what was cut, with or without a measured run.
-    pub const fn cut_sentence(measured: bool) -> &'static str {
+    pub(crate) const fn cut_sentence(measured: bool) -> &'static str {
         if measured {
             "Nothing was cut but what the log shows."
         } else {
@@ -57,7 +57,7 @@ impl Assumptions {
     }
 
     /// Returns a sentence with the machine and the source of its values.
-    pub fn machine_sentence(&self) -> String {
+    pub(crate) fn machine_sentence(&self) -> String {
         let file = self
             .machine_file
             .as_ref()
@@ -81,7 +81,7 @@ impl Assumptions {
     }
 
     /// Returns a sentence with the effects that are simulated, and those that are not.
-    pub fn simulation_sentence(&self) -> String {
+    pub(crate) fn simulation_sentence(&self) -> String {
         let listed = |names: &[&'static str]| {
             names
                 .iter()
@@ -107,7 +107,7 @@ impl Assumptions {
     }
 
     /// Returns a sentence with the axis model that the controller uses.
-    pub fn model_sentence(&self) -> String {
+    pub(crate) fn model_sentence(&self) -> String {
         let Self {
             controller,
             axis_model,

@@ -28,7 +28,7 @@ pub struct Band {
     pub joint_rms_um: Option<BandErrors>,
     /// Largest contour error at the encoders, um.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub joint_max_um: Option<BandErrors>,
+    pub(crate) joint_max_um: Option<BandErrors>,
 }
 
 /// One error over the machines of a band, um.
@@ -43,7 +43,7 @@ pub struct BandErrors {
 
 impl BandErrors {
     /// Computes the band of errors in any order; `None` if there are no errors.
-    pub fn of(mut errors_um: Vec<f64>) -> Option<Self> {
+    pub(crate) fn of(mut errors_um: Vec<f64>) -> Option<Self> {
         errors_um.sort_by(f64::total_cmp);
         let n = errors_um.len();
         let rank = (SHARE * (n + 1) as f64).ceil() as usize;

@@ -9,9 +9,9 @@ use super::text::number;
 pub struct CompensatedGeometry {
     /// The geometry file; none if the machine file states the values.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<String>,
+    pub(crate) from: Option<String>,
     /// Names of the compensated errors.
-    pub terms: Vec<&'static str>,
+    pub(crate) terms: Vec<&'static str>,
     /// Standard deviation of the tool across the path that follows from the standard deviations of
     /// the file: root mean square over the cut, um.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -23,7 +23,7 @@ pub struct CompensatedGeometry {
 
 impl CompensatedGeometry {
     /// Describes the geometry in one sentence, without its full stop.
-    pub fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let from = self.from.as_ref().map_or_else(
             || {
                 "exactly as the machine file states it; of a real machine it has to be measured"

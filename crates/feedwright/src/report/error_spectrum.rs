@@ -29,11 +29,11 @@ const LEAST_FREQUENCIES: usize = 3;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SpectrumBand {
     /// Lower end of the band, Hz.
-    pub from_hz: f64,
+    pub(crate) from_hz: f64,
     /// Upper end of the band, Hz.
-    pub to_hz: f64,
+    pub(crate) to_hz: f64,
     /// RMS of the contour error in the band, µm.
-    pub rms_um: f64,
+    pub(crate) rms_um: f64,
 }
 
 /// Collector of the spectrum of the contour error.

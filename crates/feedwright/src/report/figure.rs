@@ -100,7 +100,7 @@ impl Figure {
 
     /// Returns the figure for a page: once as wide as a text column, and once for phones; the style
     /// sheet shows one of the two.
-    pub fn to_html(&self) -> String {
+    pub(crate) fn to_html(&self) -> String {
         let [roomy, narrow] = [svg::WIDTH, svg::NARROW].map(|page_px| svg::write(self, page_px));
         format!("<div class=\"roomy\">{roomy}</div><div class=\"narrow\">{narrow}</div>")
     }
@@ -127,7 +127,7 @@ pub fn write_figure_page(
 }
 
 /// Returns the parts of a page that contain these figures.
-pub fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePart> {
+pub(crate) fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePart> {
     figures
         .iter()
         .enumerate()
@@ -135,7 +135,7 @@ pub fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePar
 }
 
 /// Writes one part of a page with its figure.
-pub fn write_figure_part(
+pub(crate) fn write_figure_part(
     out: &mut impl Write,
     part: &PagePart,
     entry: &CaptionedFigure,

@@ -28,7 +28,7 @@ pub struct CutErrors {
 
 impl CutErrors {
     /// The errors of a run.
-    pub const fn of(run: &RunSummary) -> Self {
+    pub(crate) const fn of(run: &RunSummary) -> Self {
         Self {
             rms_um: run.rms_um,
             max_um: run.max_um,
@@ -89,9 +89,9 @@ pub struct Harm {
     /// Name of the error, as in tables.
     pub what: &'static str,
     /// The error it is compared with, um.
-    pub before_um: f64,
+    pub(crate) before_um: f64,
     /// The error, um.
-    pub after_um: f64,
+    pub(crate) after_um: f64,
 }
 
 /// Returns the errors of `after` that are worse than the errors of `before`.

@@ -34,7 +34,7 @@ pub(crate) enum HeadlinePart {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Headline {
     /// Its parts, in order.
-    pub parts: Vec<HeadlinePart>,
+    pub(crate) parts: Vec<HeadlinePart>,
 }
 
 impl fmt::Display for Headline {
@@ -84,7 +84,7 @@ impl Report {
 
     /// Returns true if the run that is judged reached its end within the tolerance. Without a
     /// tolerance, reaching the end is enough.
-    pub fn is_within_tolerance(&self) -> bool {
+    pub(crate) fn is_within_tolerance(&self) -> bool {
         self.judged().is_some_and(|run| {
             run.outcome == Outcome::Completed
                 && self

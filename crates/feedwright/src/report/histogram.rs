@@ -9,7 +9,7 @@ const BINS_PER_SIDE: usize = 512;
 /// 512 bins on a side.
 const FIRST_BIN_UM: f64 = 1e-3;
 
-/// Most bins of a finished [`Histogram`]: what a plot can show.
+/// Most bins of a finished `Histogram`: what a plot can show.
 const SHOWN_BINS: usize = 96;
 
 /// Distribution of the contour error over the rows that cut. Bin `i` of `counts` holds errors from
@@ -18,9 +18,9 @@ const SHOWN_BINS: usize = 96;
 pub struct Histogram {
     /// Width of a bin, µm: 0.001 times a power of two, so that histograms of several runs can be
     /// brought to one width.
-    pub bin_um: f64,
+    pub(crate) bin_um: f64,
     /// Number of the first bin; the bin from 0 upwards has number 0.
-    pub first_bin: i64,
+    pub(crate) first_bin: i64,
     /// Rows in each bin.
     pub counts: Vec<u64>,
 }

@@ -35,7 +35,7 @@ pub struct LimitBand {
     /// Names of the limits.
     pub names: Vec<String>,
     /// The plan.
-    pub along: BindingAlong,
+    pub(crate) along: BindingAlong,
 }
 
 impl LimitBand {

@@ -20,8 +20,8 @@ const MAX_SPAN: usize = 32;
 /// Vertex of an outline; `cutting` says how the path came to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Vertex {
-    pub point_mm: [f64; 3],
-    pub cutting: bool,
+    pub(crate) point_mm: [f64; 3],
+    pub(crate) cutting: bool,
 }
 
 /// Collects an outline.

@@ -21,9 +21,9 @@ pub struct SeriesPoint {
     /// Time of the row, s.
     pub t_s: f64,
     /// Arc length along the programmed path, mm.
-    pub s_mm: f64,
+    pub(crate) s_mm: f64,
     /// Line of the program.
-    pub line: u32,
+    pub(crate) line: u32,
     /// True where any of the rows cuts.
     pub cutting: bool,
     /// Contour error of the row, mm, signed as in [`Row`].
@@ -38,15 +38,15 @@ pub struct SeriesPoint {
     /// the drawing.
     pub deviation_mm: [f64; 3],
     /// Mean planned feedrate, mm/s.
-    pub feed_plan_mm_s: f64,
+    pub(crate) feed_plan_mm_s: f64,
     /// Mean actual speed of the tool, mm/s: length of the polyline through its positions over the
     /// time it took.
-    pub feed_act_mm_s: f64,
+    pub(crate) feed_act_mm_s: f64,
     /// Torque of largest magnitude on each axis, N m, with its sign.
-    pub torque_nm: [f64; 3],
+    pub(crate) torque_nm: [f64; 3],
     /// Acceleration of largest magnitude of each axis's command, mm/s2, with its sign: the second
     /// difference over servo periods.
-    pub accel_mm_s2: [f64; 3],
+    pub(crate) accel_mm_s2: [f64; 3],
 }
 
 /// Relative difference below which two periods are the same: times are rounded.
@@ -116,7 +116,7 @@ impl Series {
     }
 
     /// Returns the number of rows that one point represents.
-    pub fn rows_per_point(&self) -> u64 {
+    pub(crate) fn rows_per_point(&self) -> u64 {
         self.rows_per_point
     }
 

@@ -30,14 +30,14 @@ pub struct RunFacts {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveLimits {
     /// Acceleration that a command may have, mm/s2.
-    pub accel_mm_s2: [f64; 3],
+    pub(crate) accel_mm_s2: [f64; 3],
     /// Torque, N m.
-    pub torque_nm: [f64; 3],
+    pub(crate) torque_nm: [f64; 3],
 }
 
 impl DriveLimits {
     /// Returns the limits of a machine.
-    pub fn of(machine: &Machine) -> Self {
+    pub(crate) fn of(machine: &Machine) -> Self {
         Self {
             accel_mm_s2: std::array::from_fn(|i| machine.accel_limit_mm_s2(i)),
             torque_nm: std::array::from_fn(|i| machine.axis(i).torque_limit_nm),
@@ -80,16 +80,16 @@ pub struct CommandShares {
     /// Acceleration of the command.
     pub acceleration: CommandShare,
     /// Torque.
-    pub torque: CommandShare,
+    pub(crate) torque: CommandShare,
 }
 
 /// A share of the limit of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CommandShare {
     /// X, Y or Z.
-    pub axis: &'static str,
+    pub(crate) axis: &'static str,
     /// 1 is the limit.
-    pub share: f64,
+    pub(crate) share: f64,
 }
 
 /// Largest allowed share of an acceleration limit, in percent as the user reads it. The plan may
@@ -101,22 +101,22 @@ const MOST_PERCENT: f64 = 200.0;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FeedShares {
     /// Share of the time below 0.8 of F.
-    pub slow_share: f64,
+    pub(crate) slow_share: f64,
     /// Share of the time above 1.2 of F.
-    pub fast_share: f64,
+    pub(crate) fast_share: f64,
     /// Largest speed, as a fraction of F.
     pub largest: f64,
 }
 
 impl RunSummary {
     /// Returns true if most of the part, or its end, was cut without the correction.
-    pub fn is_mostly_uncorrected(&self) -> bool {
+    pub(crate) fn is_mostly_uncorrected(&self) -> bool {
         self.faded_out.is_some() && (self.engaged_share < LEAST_SHARE || !self.engaged_at_end)
     }
 
     /// Returns the share of the acceleration limit that its command asks for, if it is more than
     /// any drive may get.
-    pub fn beyond_drives(&self) -> Option<CommandShare> {
+    pub(crate) fn beyond_drives(&self) -> Option<CommandShare> {
         self.command_share
             .map(|shares| shares.acceleration)
             .filter(|asked| (100.0 * asked.share).round() > MOST_PERCENT)
@@ -134,25 +134,25 @@ pub struct RunSummary {
     /// Name of the controller.
     pub controller: String,
     /// Name of the machine.
-    pub machine: String,
+    pub(crate) machine: String,
     /// Name of the part.
-    pub part: String,
+    pub(crate) part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
     /// True where the run was measured on a machine; false where it was simulated.
-    pub measured: bool,
+    pub(crate) measured: bool,
     /// Outcome of the run.
     pub outcome: Outcome,
     /// Time and reason of the last disengagement by the supervisor.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub faded_out: Option<FadedOut>,
+    pub(crate) faded_out: Option<FadedOut>,
     /// All changes in what corrects the command, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub transitions: Vec<Transition>,
     /// Part of the cutting time in which the controller was in the loop.
-    pub engaged_share: f64,
+    pub(crate) engaged_share: f64,
     /// True where the controller was in the loop at the end.
-    pub engaged_at_end: bool,
+    pub(crate) engaged_at_end: bool,
     /// Machining time: end of the command, s.
     pub time_s: f64,
     /// Root mean square of the contour error over the rows that cut, µm.
@@ -172,34 +172,34 @@ pub struct RunSummary {
     pub uncut_um: f64,
     /// Largest distance of the corrected reference from the programmed path's point of the same
     /// row, µm.
-    pub max_deviation_um: f64,
+    pub(crate) max_deviation_um: f64,
     /// Largest acceleration of the command from one servo period to the next, mm/s2.
-    pub max_command_accel_mm_s2: f64,
+    pub(crate) max_command_accel_mm_s2: f64,
     /// Shares of the drive limits that the command uses; none for a log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command_share: Option<CommandShares>,
     /// Largest torque of each axis, N m; none for a log: torques of logs are not read.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub peak_torque_nm: Option<[f64; 3]>,
+    pub(crate) peak_torque_nm: Option<[f64; 3]>,
     /// Deviation of the tool speed from the programmed feedrate; none if that is not known, as for
     /// a log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feed: Option<FeedShares>,
     /// Arc length that was cut, mm.
-    pub cutting_length_mm: f64,
+    pub(crate) cutting_length_mm: f64,
     /// Time during which the tool cut, s.
-    pub cutting_time_s: f64,
+    pub(crate) cutting_time_s: f64,
     /// Servo periods simulated.
-    pub rows: u64,
+    pub(crate) rows: u64,
     /// Time at which the tool has arrived at the end, s.
-    pub arrival_s: f64,
+    pub(crate) arrival_s: f64,
     /// Median computing time of the ticks in which the controller decides, us. Not shown on the
     /// page, which must not depend on the computer.
     pub tick_median_us: f64,
     /// Computing time that 99.9 % of these ticks stay below, us.
     pub tick_p999_us: f64,
     /// Largest number of register entries that one estimate of the contour error looked at.
-    pub most_register_entries: usize,
+    pub(crate) most_register_entries: usize,
     /// Largest contour errors, largest first, each place once.
     pub worst: Vec<WorstPlace>,
     /// Distribution of the contour error.

@@ -34,7 +34,7 @@ pub struct WorstPlace {
     /// Text of that line.
     pub text: String,
     /// Position of the tool, mm.
-    pub position_mm: [f64; 3],
+    pub(crate) position_mm: [f64; 3],
     /// Time, s.
     pub t_s: f64,
     /// Arc length along the programmed path, mm.

@@ -8,7 +8,7 @@ use crate::measured::MeasuredError;
 
 /// Reason why nothing can be learned from a log.
 #[derive(Debug, Error, miette::Diagnostic)]
-pub enum LearnError {
+pub(crate) enum LearnError {
     /// The log does not match the program.
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -54,7 +54,7 @@ const FORGETS: f64 = 6.0;
 /// A value of an axis that may be wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ModelValue {
+pub(crate) enum ModelValue {
     /// Gain of the position loop.
     PositionGain,
     /// Gain of the speed loop.
@@ -121,15 +121,15 @@ impl ModelValue {
 
 /// A value as the logs show it.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct LearnedValue {
+pub(crate) struct LearnedValue {
     /// The axis.
-    pub axis: &'static str,
+    pub(crate) axis: &'static str,
     /// Name of the value.
-    pub value: ModelValue,
+    pub(crate) value: ModelValue,
     /// Factor on the value of the machine file.
-    pub factor: f64,
+    pub(crate) factor: f64,
     /// Standard deviation of the factor, as a fraction of it.
-    pub standard_deviation: f64,
+    pub(crate) standard_deviation: f64,
 }
 
 /// Model with the values that the logs show.

@@ -25,7 +25,7 @@ const DWELL_S: f64 = 5e-3;
 /// Program that a log is a cut of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum CutProgram {
+pub(crate) enum CutProgram {
     /// The program that is corrected.
     Original,
     /// A program that was corrected before.
