@@ -134,9 +134,8 @@ mod tests {
             steps
         };
         assert_eq!(read(&programs[0]), read(&programs[1]));
-        assert_eq!(read(&programs[0]), read(&programs[2]));
         assert_eq!(programs[0].name(), "part.ngc");
-        assert_eq!(programs[2].path(), Some(file.path()));
+        assert_eq!(programs[1].path(), Some(file.path()));
     }
 
     #[test]
