@@ -96,7 +96,6 @@ macro_rules! members {
     ($($Name:ident($Type:ty)),* $(,)?) => {
         /// A controller of the table.
         #[derive(Debug, Clone)]
-        #[expect(clippy::large_enum_variant, reason = "a servo thread does not allocate")]
         pub enum AnyController<const N: usize> {
             $(#[doc = concat!("[`", stringify!($Name), "`].")] $Name($Type)),*
         }

@@ -89,7 +89,7 @@ impl<const N: usize> Member<N> for Feedforward<N> {
             acceleration: values(&ACCELERATION_GAIN),
             friction: values(&FRICTION_GAIN),
         };
-        Some(Self::new(data.inverse?.clone(), [gains; N]))
+        Some(Self::new(*data.inverse?, [gains; N]))
     }
 }
 
