@@ -84,7 +84,7 @@ pub struct Job {
     pub choices: Choices,
     /// A model for the requested controller, in place of a training.
     pub model: Option<Model>,
-    /// Log that gives the model if there is none; `None` trains the controller on the machine.
+    /// Log that gives a missing model; `None` trains the controller on the machine.
     pub model_of_log: Option<ModelOfLog>,
     /// Machines that fit the recording of the model. Each is cut with the controller too, and the
     /// results are the band of the report.
