@@ -10,6 +10,7 @@ use crate::report::CompensatedGeometry;
 
 /// Choice of the errors to compensate that no encoder sees.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum GeometryChoice {
     /// Nothing is compensated.
     Off,

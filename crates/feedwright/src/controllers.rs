@@ -220,9 +220,11 @@ pub struct Choices {
     pub set: Vec<Setting>,
     /// Controllers that cut uncorrected, because none of their values is better than no correction
     /// on the machine.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unsuited: Vec<String>,
     /// True if the paper's controller must show that it helps before it is followed. The comparison
     /// cuts it as it was published.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub tries: bool,
 }
 
