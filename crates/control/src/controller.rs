@@ -11,7 +11,7 @@ pub(crate) mod inverting;
 pub(crate) mod magnitude_only;
 pub(crate) mod two_dimensional;
 
-use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::AxisModel;
 use crate::command::{Command, FaultEvidence, Measured};
 use crate::window::Window;
 
@@ -54,7 +54,7 @@ pub trait Controller<const N: usize> {
     }
     /// Returns the axes as the controller knows them now, if it uses such knowledge. A controller
     /// that learns returns other axes than the ones of its construction.
-    fn known(&self) -> Option<[AxisKnowledge; N]> {
+    fn known(&self) -> Option<[AxisModel; N]> {
         None
     }
     /// Returns for each axis whether the controller follows a model that it learned in motion.

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use feedwright::{CONTROLLERS, Choices, Setup, offset_bounds};
 use feedwright_control::{
     Bounds, Command, ContourIdentifier, Controller, FaultEvidence, IdentifiedAxes, Identifier,
-    Knot, KnotSource, Measured, Schedule, Tick, Window,
+    Knot, KnotSource, Measured, Part, Schedule, Tick, Window,
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes, TrainedContour};
 use feedwright_servo::live_controller::LiveController;
@@ -120,11 +120,13 @@ fn recording(feed_period_s: f64) -> Recording<2> {
 
 /// Exact model of the axes.
 fn axes_model(machine: &Machine) -> Model {
-    let (known, statistics) = (machine.known(), machine.statistics::<2>());
-    let periods = known.period.periods();
+    let known = machine.known();
     let axes = IdentifiedAxes {
-        mechanics_s: periods.mechanics_s,
-        axes: std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i])),
+        periods: known.period.periods(),
+        axes: [0, 1].map(|i| {
+            let all = machine.axis(i).parameters();
+            known.axis(i).nominal.taking(&[Part::Noise], &all)
+        }),
     };
     let trained = TrainedAxes {
         axes,

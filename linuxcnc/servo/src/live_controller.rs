@@ -88,7 +88,7 @@ impl<const N: usize> LiveController<N> {
                     is_known,
                     ..settings
                 };
-                Kind::Regulator(LqgPreview::new(identified.axes, settings))
+                Kind::Regulator(LqgPreview::new(identified.axis_models(), settings))
             }
             LinkModel::Contour(contour) => Kind::Inversion(Inversion::new(contour)),
         };

@@ -39,7 +39,7 @@ impl<const N: usize> LinkModel<N> {
     /// Servo period, s.
     pub fn servo_s(&self) -> f64 {
         match self {
-            Self::Axes(axes) => axes.axes.first().map_or(0.0, |axis| axis.periods.servo_s),
+            Self::Axes(axes) => axes.periods.servo_s,
             Self::Contour(contour) => contour.servo_s,
         }
     }

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use feedwright::command::{find, settings};
-use feedwright::control::{AxisKnowledge, AxisStatistics, Controller};
+use feedwright::control::{Controller, Parameters};
 use feedwright::sim::{Known, Machine};
 use feedwright::{Choices, Controllers, Entry, Job, JobOutcome, Knows, Make, Setup, UNCORRECTED};
 use miette::{IntoDiagnostic, Result, miette};
@@ -243,11 +243,9 @@ pub(super) fn told<'py>(
 ) -> PyResult<Bound<'py, PyTuple>> {
     let read_only = py.import("types")?.getattr("MappingProxyType")?;
     let axis = |i: usize| {
-        let mut axis = known
-            .axis(i)
-            .with_statistics(known.period.periods(), AxisStatistics::NOTHING);
+        let mut axis = known.axis(i).nominal;
         let numbers = PyDict::new(py);
-        for number in AxisKnowledge::NUMBERS {
+        for number in Parameters::NUMBERS {
             numbers.set_item(number.name, *(number.of)(&mut axis))?;
         }
         read_only.call1((numbers,))

@@ -61,7 +61,7 @@ mod regulated_axis;
 
 use super::feedforward::preview;
 use super::{Controller, Schedule};
-use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::AxisModel;
 use crate::command::{Command, FaultEvidence, Measured};
 use crate::supervisor::first_use::FirstUse;
 use crate::supervisor::one_step::OneStep;
@@ -104,8 +104,8 @@ pub struct LqgPreview<const N: usize> {
 }
 
 impl<const N: usize> LqgPreview<N> {
-    /// Creates the controller of a machine with this knowledge of its axes.
-    pub fn new(known: [AxisKnowledge; N], settings: LqgSettings) -> Self {
+    /// Creates the controller of a machine with these models of its axes.
+    pub fn new(known: [AxisModel; N], settings: LqgSettings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
         let preview_knots =
             |axis: &AxisLqg| preview(axis.ahead_s(), axis.axis_model().periods.servo_s);
@@ -136,7 +136,7 @@ impl<const N: usize> LqgPreview<N> {
         let mut seen_mm2 = [0.0; 2];
         for (i, (axis, position_mm)) in self.axes.iter().zip(position_mm).enumerate() {
             let there_mm = window
-                .at(-self.lag_s - axis.known().delays.measurement_s)
+                .at(-self.lag_s - axis.axis_model().parameters.measurement_delay_s)
                 .position_mm;
             let off_mm = [
                 position_mm - axis.alone_mm(),
@@ -323,7 +323,10 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     /// Returns infinity if the model is wrong, or if no command can follow the drive.
     fn prediction_error_mm(&self) -> f64 {
-        let is_followed = self.axes.iter().all(|axis| axis.known().is_followed());
+        let is_followed = self
+            .axes
+            .iter()
+            .all(|axis| axis.axis_model().parameters.is_followed());
         if self
             .validity
             .as_ref()
@@ -338,8 +341,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         self.validity.as_ref().and_then(Validity::doubt)
     }
 
-    fn known(&self) -> Option<[AxisKnowledge; N]> {
-        Some(self.axes.each_ref().map(AxisLqg::known))
+    fn known(&self) -> Option<[AxisModel; N]> {
+        Some(self.axes.each_ref().map(|axis| *axis.axis_model()))
     }
 
     fn learned(&self) -> [bool; N] {

@@ -37,7 +37,7 @@ pub(super) fn lqg_identified<const N: usize>(
         bounds,
     );
     match setup.axes::<N>() {
-        Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
+        Some(identified) => Box::new(LqgPreview::new(identified.axis_models(), settings)),
         None => Box::new(Uncorrected),
     }
 }
@@ -83,13 +83,9 @@ pub fn offset_bounds(known: &Known) -> OffsetBounds {
 
 /// Time in which the speed loop of an axis responds: its time constant, and the delays of bus and
 /// encoder.
-fn response_s(
-    KnownAxis {
-        nominal, delays, ..
-    }: &KnownAxis,
-) -> f64 {
+fn response_s(KnownAxis { nominal, .. }: &KnownAxis) -> f64 {
     let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
-    nominal.inertia_kg_m2 / damping_nm_s + delays.drive_s + delays.measurement_s
+    nominal.inertia_kg_m2 / damping_nm_s + nominal.drive_delay_s + nominal.measurement_delay_s
 }
 
 /// Settings of the controllers that invert the paper's identifier.

@@ -3,12 +3,12 @@
 //! The machine itself stays in here. Code that makes a controller has no access to it, so that the
 //! controller cannot use values that only the simulation knows. A training uses a recording of the
 //! machine.
-use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind};
+use feedwright_control::{AxisModel, ContourIdentifier, IdentifiedAxes, IdentifierKind, Part};
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin,
-    TrainedAxes, Training, an_identifier, identify_axis,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
+    an_identifier, identify_axis,
 };
-use feedwright_sim::{Known, KnownAxis, Machine};
+use feedwright_sim::{Known, Machine};
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -305,19 +305,18 @@ impl<'a> Setup<'a> {
 
     /// Returns the true values of the machine's axes, for the limit alone. A screw with a scale on
     /// the table counts as rigid.
-    pub fn truth<const N: usize>(&self) -> [AxisKnowledge; N] {
-        let (periods, statistics) = (self.known.period.periods(), self.machine.statistics::<N>());
+    pub fn truth<const N: usize>(&self) -> [AxisModel; N] {
         std::array::from_fn(|i| {
-            let axis = KnownAxis {
-                transmission: self.machine.axis(i).transmission(),
-                ..*self.known.axis(i)
-            };
-            let axis = if axis.scale_on_table {
-                *self.known.axis(i)
+            let (known, all) = (self.known.axis(i), self.machine.axis(i).parameters());
+            let parts: &[Part] = if known.scale_on_table {
+                &[Part::Noise]
             } else {
-                axis
+                &[Part::Noise, Part::Screw]
             };
-            axis.with_statistics(periods, statistics[i])
+            AxisModel::new(
+                known.nominal.taking(parts, &all),
+                self.known.period.periods(),
+            )
         })
     }
 
@@ -345,11 +344,8 @@ impl<'a> Setup<'a> {
         let excitation = Excitation::axis_parameters(self.machine);
         let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
         let found = |i: usize| {
-            let axis = self.known.axis(i);
-            let settings = DriveSettings::of(axis, &self.known.period);
-            Ok(identify_axis(&recording, i, &settings)?
-                .parameters
-                .believed(axis, &settings))
+            let found = identify_axis(&recording, i, &self.known)?;
+            Ok(found.believed(self.known.axis(i)))
         };
         let axes = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
         self.known = self
@@ -365,7 +361,7 @@ impl<'a> Setup<'a> {
             let recordings = AxisRecordings::of(self.machine, self.choices.seed);
             let axes = identified_axes(&recordings, &self.machine.known(), &self.known);
             self.found = axes.as_ref().err().map(|cause| Err(*cause));
-            axes.ok()?.axes.with_periods(self.known.period.servo_s)
+            axes.ok()?.axes.at_servo_period(self.known.period.servo_s)
         })
     }
 

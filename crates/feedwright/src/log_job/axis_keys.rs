@@ -151,7 +151,7 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
         nm * get(ModelTerm::Coulomb),
         interval(found, ModelTerm::Coulomb, nm),
     ));
-    let smoothing = found.axis_model().smoothing_at_mm_s(mechanics_s) * TAU / lead;
+    let smoothing = found.axis_model().smoothing_mm_s(mechanics_s) * TAU / lead;
     keys.push(assumed(
         "coulomb_smoothing_rad_s",
         smoothing.max(LEAST_SMOOTHING_RAD_S),

@@ -26,7 +26,7 @@
 //! | resonance, table share, backlash | motor and table as two masses, see `crates/control/src/axis/transmission.rs` |
 //! | presliding, Stribeck | see `crates/control/src/axis/friction.rs` |
 
-use feedwright_control::{DriveParameters, FrictionParameters, Parameters};
+use feedwright_control::Parameters;
 use feedwright_sim::{Axis, Transmission};
 
 use super::axis_record::LATEST_S;
@@ -239,7 +239,7 @@ impl TermValues {
             .with(ModelTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
             .with(
                 ModelTerm::CommandDelay,
-                axis.loop_delays().command_periods(servo_s) as f64 * servo_s,
+                axis.parameters().command_periods(servo_s) as f64 * servo_s,
             )
             .with(ModelTerm::LoopDelay, axis.drive_delay_s)
             .with(ModelTerm::VelocityFeedforward, axis.velocity_feedforward)
@@ -309,34 +309,16 @@ impl TermValues {
     /// 1 N m is 1 mm/s2.
     pub(super) fn parameters(&self, mechanics_s: f64) -> Parameters {
         let limit = self.get(ModelTerm::AccelerationLimit);
-        Parameters {
+        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+        let plain = Parameters {
             rad_per_mm: 1.0,
             kp_1_s: self.kp_1_s(),
-            kd: 0.0,
             kv_nm_s_per_rad: self.speed_gain_1_s(),
             torque_limit_nm: if limit > 0.0 { limit } else { f64::MAX },
             inertia_kg_m2: 1.0,
             viscous_friction_nm_s: self.get(ModelTerm::Viscous),
             coulomb_friction_nm: self.get(ModelTerm::Coulomb),
             coulomb_smoothing_rad_s: self.smoothing_mm_s(mechanics_s),
-        }
-    }
-
-    /// Speed over which friction without presliding turns its sign, mm/s: as tnv40's, and so much
-    /// that a step of the integration does not go past it.
-    pub(super) fn smoothing_mm_s(&self, mechanics_s: f64) -> f64 {
-        let most = self.get(ModelTerm::Coulomb) * (1.0 + self.get(ModelTerm::Stribeck));
-        (2.0 * most * mechanics_s).max(SMOOTHING_MM_S)
-    }
-
-    /// The same for a machine file, mm/s.
-    pub fn smoothing_at_mm_s(&self, mechanics_s: f64) -> f64 {
-        self.smoothing_mm_s(mechanics_s)
-    }
-
-    pub(super) fn drive(&self) -> DriveParameters {
-        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-        DriveParameters {
             speed_integral_s: inverse(self.get(ModelTerm::Integral)),
             velocity_feedforward: self.get(ModelTerm::VelocityFeedforward),
             acceleration_feedforward: self.get(ModelTerm::AccelerationFeedforward),
@@ -344,7 +326,27 @@ impl TermValues {
             speed_limit_rad_s: self.get(ModelTerm::SpeedLimit),
             // A free run has the positions of the window.
             speed_window_s: 0.0,
-        }
+            coulomb_asymmetry_nm: self.get(ModelTerm::Offset),
+            stribeck_nm: self.get(ModelTerm::Stribeck) * self.get(ModelTerm::Coulomb),
+            stribeck_rad_s: self.get(ModelTerm::StribeckSpeed),
+            presliding_rad: self.get(ModelTerm::Presliding),
+            ..Parameters::NOTHING
+        };
+        self.transmission(mechanics_s)
+            .map_or(plain, |screw| Parameters {
+                table_share: screw.table_share,
+                resonance_rad_s: std::f64::consts::TAU * screw.resonance_hz,
+                damping_ratio: screw.damping_ratio,
+                backlash_rad: 1e-3 * screw.backlash_um,
+                ..plain
+            })
+    }
+
+    /// Speed over which friction without presliding turns its sign, mm/s: as tnv40's, and so much
+    /// that a step of the integration does not go past it.
+    pub fn smoothing_mm_s(&self, mechanics_s: f64) -> f64 {
+        let most = self.get(ModelTerm::Coulomb) * (1.0 + self.get(ModelTerm::Stribeck));
+        (2.0 * most * mechanics_s).max(SMOOTHING_MM_S)
     }
 
     /// Motor and table as two masses; none where the screw is rigid. In um where a machine file has
@@ -358,15 +360,6 @@ impl TermValues {
             backlash_um: 1e3 * self.get(ModelTerm::Backlash),
             scale_on_table: false,
         })
-    }
-
-    pub(super) fn friction(&self) -> FrictionParameters {
-        FrictionParameters {
-            coulomb_asymmetry_nm: self.get(ModelTerm::Offset),
-            stribeck_nm: self.get(ModelTerm::Stribeck) * self.get(ModelTerm::Coulomb),
-            stribeck_rad_s: self.get(ModelTerm::StribeckSpeed),
-            presliding_rad: self.get(ModelTerm::Presliding),
-        }
     }
 }
 
