@@ -3,10 +3,11 @@
 //!
 //! A row has the number as a machine file states it, and after `=>` the number that the equations
 //! take: at the motor shaft, with its place in a model block. Where both differ, the row ends with
-//! the second as a function of the first.
+//! the second as a function of the first. A key that `needs` another says how much, the other over
+//! what.
 //!
 //! ```text
-//! key  kind  unit  [least, most]  words  =>  { place  part  number  unit?  rule [least, most]?  format?  (words, function)? }
+//! key  kind  unit  [least, most]  words  (needs key)?  =>  { place  part  number  unit?  rule [least, most]?  format?  (words, function)? }
 //! ```
 //!
 //! | Kind of a key | Left out |
@@ -78,7 +79,7 @@ macro_rules! axis_numbers {
                 speed_held flag "(0 or 1)" [0.0, 1.0] "True if the drive samples the speed at the start of each servo period and holds it";
                 encoder_noise_um or_zero "um" [0.0, 1e3] "RMS of white noise of the encoder"
                     => { 25 Noise encoder_noise_rad "rad" within [0.0, 1e3] 2 ("RMS of the encoder's white noise", |axis| axis.rad(axis.encoder_noise_um)) };
-                interpolation_error_um or_zero "um" [0.0, 1e3] "Amplitude of the encoder's error within a signal period"
+                interpolation_error_um or_zero "um" [0.0, 1e3] "Amplitude of the encoder's error within a signal period" needs signal_period_um
                     => { 27 Noise interpolation_rad "rad" within [0.0, 1e3] 2 ("Amplitude of the encoder's error within a signal period", |axis| axis.rad(axis.interpolation_error_um)) };
                 signal_period_um or_zero "um" [0.0, 1e5] "Signal period of the encoder"
                     => { 29 Noise signal_per_rad "1/rad" within [0.0, 1e9] 2 ("Signal periods in a radian, times 2 pi", Axis::signal_per_rad) };
@@ -87,17 +88,17 @@ macro_rules! axis_numbers {
                 jitter_s or_zero "s" [0.0, 0.02] "Largest extra delay of a reference on its way to the drive";
                 coulomb_asymmetry_nm or_zero "N m" [-1e5, 1e5] "Excess of the Coulomb friction in the positive direction; in the negative direction it is lower by the same amount"
                     => { 17 Friction coulomb_asymmetry_nm within 2 };
-                stribeck_nm or_zero "N m" [0.0, 1e5] "Excess of the friction at rest over the Coulomb friction"
+                stribeck_nm or_zero "N m" [0.0, 1e5] "Excess of the friction at rest over the Coulomb friction" needs stribeck_mm_s
                     => { 18 Friction stribeck_nm within 2 };
                 stribeck_mm_s or_zero "mm/s" [0.0, 1e4] "Speed over which this excess decays"
                     => { 19 Friction stribeck_rad_s "rad/s" or_none [1e-6, 1e7] 2 ("Speed over which the Stribeck part decays", |axis| axis.stribeck_mm_s * axis.rad_per_mm()) };
                 presliding_um or_zero "um" [0.0, 1e4] "Deflection before friction slides"
                     => { 20 Friction presliding_rad "rad" or_none [1e-12, 1e4] 2 ("Deflection before the axis slides", |axis| axis.rad(axis.presliding_um)) };
-                cogging_nm or_zero "N m" [0.0, 1e5] "Amplitude of the cogging torque"
+                cogging_nm or_zero "N m" [0.0, 1e5] "Amplitude of the cogging torque" needs cogging_per_rev
                     => { 35 Noise cogging_nm within 2 };
                 cogging_per_rev or_zero "1/rev" [0.0, 1e4] "Periods of the cogging torque in a turn"
                     => { 37 Noise cogging_per_rev within 2 };
-                ripple or_zero "(no unit)" [0.0, 1.0] "Amplitude of the torque ripple, part of the torque";
+                ripple or_zero "(no unit)" [0.0, 1.0] "Amplitude of the torque ripple, part of the torque" needs ripple_per_rev;
                 ripple_per_rev or_zero "1/rev" [0.0, 1e4] "Periods of the torque ripple in a turn";
                 torque_noise_nm or_zero "N m" [0.0, 1e5] "RMS of the broadband torque"
                     => { 30 Noise torque_noise_nm within 2 };
@@ -200,8 +201,8 @@ macro_rules! is {
 /// Makes [`Parameters`] of the table.
 macro_rules! parameters {
     (
-        axis { $($key:ident $kind:ident $unit:literal $range:tt $words:literal $(=> { $($number:tt)* })?;)* }
-        transmission { $($screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(=> { $($of_screw:tt)* })?;)* }
+        axis { $($key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)? $(=> { $($number:tt)* })?;)* }
+        transmission { $($screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(needs $screw_needed:ident)? $(=> { $($of_screw:tt)* })?;)* }
         model { $({ $($own:tt)* };)* }
     ) => {
         parameters! { @

@@ -56,8 +56,8 @@ const CONTOUR: &[Key<Weights>] = &[
 /// value per axis.
 macro_rules! axes_keys {
     (
-        axis { $($key:ident $kind:ident $unit:literal $range:tt $words:literal $(=> { $place:literal $($number:tt)* })?;)* }
-        transmission { $($screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(=> { $screw_place:literal $($of_screw:tt)* })?;)* }
+        axis { $($key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)? $(=> { $place:literal $($number:tt)* })?;)* }
+        transmission { $($screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(needs $screw_needed:ident)? $(=> { $screw_place:literal $($of_screw:tt)* })?;)* }
         model { $({ $own_place:literal $($own:tt)* };)* }
     ) => {
         const AXES: &[Key<Weights>] = &{

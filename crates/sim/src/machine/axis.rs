@@ -69,11 +69,11 @@ macro_rules! at_shaft {
 macro_rules! axis {
     (
         axis { $(
-            $key:ident $kind:ident $unit:literal $range:tt $words:literal
+            $key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)?
             $(=> { $place:literal $part:ident $name:ident $($own_unit:literal)? $rule:ident $([$least:expr, $most:expr])? $format:literal $(($own_words:literal, $of:expr))? })?;
         )* }
         transmission { $(
-            $screw_key:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal
+            $screw_key:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(needs $screw_needed:ident)?
             $(=> { $screw_place:literal $screw_part:ident $screw_name:ident $($screw_own_unit:literal)? $screw_rule:ident $([$screw_least:expr, $screw_most:expr])? $screw_format:literal $(($screw_own_words:literal, $of_screw:expr))? })?;
         )* }
         model { $($model:tt)* }
@@ -116,6 +116,12 @@ macro_rules! axis {
         }
 
         impl Axis {
+            /// Keys that say how much, each with its value, and the key that says over what.
+            pub(super) fn needs(&self) -> impl Iterator<Item = [(&'static str, f64); 2]> {
+                [$($([(stringify!($key), self.$key), (stringify!($needed), self.$needed)],)?)*]
+                    .into_iter()
+            }
+
             /// Returns the numbers of the axis at the motor shaft.
             pub fn parameters(&self) -> Parameters {
                 let axis = Parameters {
