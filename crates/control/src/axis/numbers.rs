@@ -7,7 +7,8 @@
 //! what.
 //!
 //! ```text
-//! key  kind  unit  [least, most]  words  (needs key)?  =>  { place  part  number  unit?  rule [least, most]?  format?  (words, function)? }
+//! key  kind  unit  [least, most]  words  (needs key)?
+//!     => { place  part  number  unit?  rule [least, most]?  format  (words, function)? }
 //! ```
 //!
 //! | Kind of a key | Left out |
@@ -34,98 +35,155 @@ macro_rules! axis_numbers {
         $of! {
             axis {
                 lead_mm_per_rev required "mm/rev" [0.01, 1e3] "Travel for one motor turn"
-                    => { 0 Loops rad_per_mm "rad/mm" within [1e-3, 1e3] 2 ("Turn of the motor for a travel of the table", Axis::rad_per_mm) };
+                    => { 0 Loops rad_per_mm "rad/mm" within [1e-3, 1e3] 2
+                        ("Turn of the motor for a travel of the table", Axis::rad_per_mm) };
                 inertia_kg_m2 required "kg m2" [1e-9, 1e3] "Inertia at the motor shaft"
                     => { 13 Loops inertia_kg_m2 within 2 };
                 viscous_friction_nm_s required "N m s/rad" [0.0, 1e4] "Viscous friction"
                     => { 14 Loops viscous_friction_nm_s within 2 };
                 coulomb_friction_nm required "N m" [0.0, 1e5] "Coulomb friction torque"
                     => { 15 Loops coulomb_friction_nm within 2 };
-                coulomb_smoothing_rad_s required "rad/s" [1e-6, 1e3] "Speed over which the Coulomb torque turns its sign"
+                coulomb_smoothing_rad_s required "rad/s" [1e-6, 1e3]
+                    "Speed over which the Coulomb torque turns its sign"
                     => { 16 Loops coulomb_smoothing_rad_s within 2 };
                 disturbance_nm required "N m" [0.0, 1e5] "Amplitude of the disturbance torque"
                     => { 32 Noise disturbance_nm within 2 };
                 disturbance_hz required "Hz" [0.0, 1e5] "Frequency of the disturbance torque"
-                    => { 33 Noise disturbance_rad_s "rad/s" within [0.0, 1e6] 2 ("Frequency of the disturbance torque", |axis| TAU * axis.disturbance_hz) };
+                    => { 33 Noise disturbance_rad_s "rad/s" within [0.0, 1e6] 2
+                        ("Frequency of the disturbance torque", |axis| TAU * axis.disturbance_hz) };
                 kp_1_s required "1/s" [1e-3, 1e5] "Proportional gain of the position loop"
                     => { 1 Loops kp_1_s within 2 };
-                kd required "(no unit)" [0.0, 1e3] "Derivative gain of the position loop: rad/s of command for a rad/s of error rate"
+                kd required "(no unit)" [0.0, 1e3]
+                    "Derivative gain of the position loop: rad/s of command for a rad/s of error \
+rate"
                     => { 2 Loops kd "" within 2 };
                 kv_nm_s_per_rad required "N m s/rad" [1e-9, 1e6] "Gain of the speed loop"
                     => { 3 Loops kv_nm_s_per_rad within 2 };
                 torque_limit_nm required "N m" [1e-6, 1e6] "Torque at which the drive saturates"
                     => { 4 Loops torque_limit_nm within 2 };
-                command_delay_s or_zero "s" [0.0, 0.02] "Delay between the control and the position loop, rounded to whole servo periods"
+                command_delay_s or_zero "s" [0.0, 0.02]
+                    "Delay between the control and the position loop, rounded to whole servo \
+periods"
                     => { 38 Delays command_delay_s newer 3 };
-                drive_delay_s or_zero "s" [0.0, 0.02] "Delay between the position loop and the drive"
+                drive_delay_s or_zero "s" [0.0, 0.02]
+                    "Delay between the position loop and the drive"
                     => { 11 Delays drive_delay_s within 2 };
-                torque_bits bits "bits" [4.0, 32.0] "Width of the torque command over the range from minus to plus the torque limit; none is without steps";
-                correction_accel_mm_s2 optional "mm/s2" [0.1, 1e6] "Acceleration that a correction of the command may add to the plan's; none is no limit in the loop, and the machine's normal acceleration for a correction that fades";
-                encoder_step_um or_zero "um" [0.0, 1e3] "Step of the position encoder; zero is without steps"
-                    => { 26 Noise encoder_step_rad "rad" within [0.0, 1e3] 2 ("Step of the encoder", |axis| axis.rad(axis.encoder_step_um)) };
-                speed_integral_s or_zero "s" [0.0, 10.0] "Integral time of the speed loop; here and below zero is without"
+                torque_bits bits "bits" [4.0, 32.0]
+                    "Width of the torque command over the range from minus to plus the torque \
+limit; none is without steps";
+                correction_accel_mm_s2 optional "mm/s2" [0.1, 1e6]
+                    "Acceleration that a correction of the command may add to the plan's; none is \
+no limit in the loop, and the machine's normal acceleration for a correction \
+that fades";
+                encoder_step_um or_zero "um" [0.0, 1e3]
+                    "Step of the position encoder; zero is without steps"
+                    => { 26 Noise encoder_step_rad "rad" within [0.0, 1e3] 2
+                        ("Step of the encoder", |axis| axis.rad(axis.encoder_step_um)) };
+                speed_integral_s or_zero "s" [0.0, 10.0]
+                    "Integral time of the speed loop; here and below zero is without"
                     => { 5 Drive speed_integral_s or_none [1e-6, 10.0] 2 };
-                velocity_feedforward or_zero "(no unit)" [0.0, 2.0] "Share of the command's speed that goes to the speed loop"
+                velocity_feedforward or_zero "(no unit)" [0.0, 2.0]
+                    "Share of the command's speed that goes to the speed loop"
                     => { 6 Drive velocity_feedforward "" within 2 };
-                acceleration_feedforward or_zero "(no unit)" [0.0, 2.0] "Share of the torque for the command's acceleration that goes to the torque"
+                acceleration_feedforward or_zero "(no unit)" [0.0, 2.0]
+                    "Share of the torque for the command's acceleration that goes to the torque"
                     => { 7 Drive acceleration_feedforward "" within [0.0, 1e3] 2 };
                 torque_filter_hz or_zero "Hz" [0.0, 1e5] "Corner of the torque filter"
                     => { 8 Drive torque_filter_hz or_none [1e-3, 1e5] 2 };
                 speed_limit_mm_s or_zero "mm/s" [0.0, 1e4] "Highest reference speed of the drive"
-                    => { 9 Drive speed_limit_rad_s "rad/s" or_none [1e-5, 1e7] 2 ("Highest reference speed", |axis| axis.speed_limit_mm_s * axis.rad_per_mm()) };
-                speed_from_encoder flag "(0 or 1)" [0.0, 1.0] "True if the speed loop computes the speed from differences of the encoder";
-                speed_window_s or_zero "s" [0.0, 0.02] "Time over which the drive takes the speed from positions; no more than a mechanics period is the speed itself"
+                    => { 9 Drive speed_limit_rad_s "rad/s" or_none [1e-5, 1e7] 2
+                        ("Highest reference speed",
+                        |axis| axis.speed_limit_mm_s * axis.rad_per_mm()) };
+                speed_from_encoder flag "(0 or 1)" [0.0, 1.0]
+                    "True if the speed loop computes the speed from differences of the encoder";
+                speed_window_s or_zero "s" [0.0, 0.02]
+                    "Time over which the drive takes the speed from positions; no more than a \
+mechanics period is the speed itself"
                     => { 10 Drive speed_window_s newer [0.0, 0.2] 2 };
-                speed_held flag "(0 or 1)" [0.0, 1.0] "True if the drive samples the speed at the start of each servo period and holds it";
+                speed_held flag "(0 or 1)" [0.0, 1.0]
+                    "True if the drive samples the speed at the start of each servo period and \
+holds it";
                 encoder_noise_um or_zero "um" [0.0, 1e3] "RMS of white noise of the encoder"
-                    => { 25 Noise encoder_noise_rad "rad" within [0.0, 1e3] 2 ("RMS of the encoder's white noise", |axis| axis.rad(axis.encoder_noise_um)) };
-                interpolation_error_um or_zero "um" [0.0, 1e3] "Amplitude of the encoder's error within a signal period" needs signal_period_um
-                    => { 27 Noise interpolation_rad "rad" within [0.0, 1e3] 2 ("Amplitude of the encoder's error within a signal period", |axis| axis.rad(axis.interpolation_error_um)) };
+                    => { 25 Noise encoder_noise_rad "rad" within [0.0, 1e3] 2
+                        ("RMS of the encoder's white noise",
+                        |axis| axis.rad(axis.encoder_noise_um)) };
+                interpolation_error_um or_zero "um" [0.0, 1e3]
+                    "Amplitude of the encoder's error within a signal period" needs signal_period_um
+                    => { 27 Noise interpolation_rad "rad" within [0.0, 1e3] 2
+                        ("Amplitude of the encoder's error within a signal period",
+                        |axis| axis.rad(axis.interpolation_error_um)) };
                 signal_period_um or_zero "um" [0.0, 1e5] "Signal period of the encoder"
-                    => { 29 Noise signal_per_rad "1/rad" within [0.0, 1e9] 2 ("Signal periods in a radian, times 2 pi", Axis::signal_per_rad) };
+                    => { 29 Noise signal_per_rad "1/rad" within [0.0, 1e9] 2
+                        ("Signal periods in a radian, times 2 pi", Axis::signal_per_rad) };
                 measurement_delay_s or_zero "s" [0.0, 0.02] "Latency of the measured position"
                     => { 12 Delays measurement_delay_s within 2 };
-                jitter_s or_zero "s" [0.0, 0.02] "Largest extra delay of a reference on its way to the drive";
-                coulomb_asymmetry_nm or_zero "N m" [-1e5, 1e5] "Excess of the Coulomb friction in the positive direction; in the negative direction it is lower by the same amount"
+                jitter_s or_zero "s" [0.0, 0.02]
+                    "Largest extra delay of a reference on its way to the drive";
+                coulomb_asymmetry_nm or_zero "N m" [-1e5, 1e5]
+                    "Excess of the Coulomb friction in the positive direction; in the negative \
+direction it is lower by the same amount"
                     => { 17 Friction coulomb_asymmetry_nm within 2 };
-                stribeck_nm or_zero "N m" [0.0, 1e5] "Excess of the friction at rest over the Coulomb friction" needs stribeck_mm_s
+                stribeck_nm or_zero "N m" [0.0, 1e5]
+                    "Excess of the friction at rest over the Coulomb friction" needs stribeck_mm_s
                     => { 18 Friction stribeck_nm within 2 };
                 stribeck_mm_s or_zero "mm/s" [0.0, 1e4] "Speed over which this excess decays"
-                    => { 19 Friction stribeck_rad_s "rad/s" or_none [1e-6, 1e7] 2 ("Speed over which the Stribeck part decays", |axis| axis.stribeck_mm_s * axis.rad_per_mm()) };
+                    => { 19 Friction stribeck_rad_s "rad/s" or_none [1e-6, 1e7] 2
+                        ("Speed over which the Stribeck part decays",
+                        |axis| axis.stribeck_mm_s * axis.rad_per_mm()) };
                 presliding_um or_zero "um" [0.0, 1e4] "Deflection before friction slides"
-                    => { 20 Friction presliding_rad "rad" or_none [1e-12, 1e4] 2 ("Deflection before the axis slides", |axis| axis.rad(axis.presliding_um)) };
-                cogging_nm or_zero "N m" [0.0, 1e5] "Amplitude of the cogging torque" needs cogging_per_rev
+                    => { 20 Friction presliding_rad "rad" or_none [1e-12, 1e4] 2
+                        ("Deflection before the axis slides",
+                        |axis| axis.rad(axis.presliding_um)) };
+                cogging_nm or_zero "N m" [0.0, 1e5]
+                    "Amplitude of the cogging torque" needs cogging_per_rev
                     => { 35 Noise cogging_nm within 2 };
                 cogging_per_rev or_zero "1/rev" [0.0, 1e4] "Periods of the cogging torque in a turn"
                     => { 37 Noise cogging_per_rev within 2 };
-                ripple or_zero "(no unit)" [0.0, 1.0] "Amplitude of the torque ripple, part of the torque" needs ripple_per_rev;
+                ripple or_zero "(no unit)" [0.0, 1.0]
+                    "Amplitude of the torque ripple, part of the torque" needs ripple_per_rev;
                 ripple_per_rev or_zero "1/rev" [0.0, 1e4] "Periods of the torque ripple in a turn";
                 torque_noise_nm or_zero "N m" [0.0, 1e5] "RMS of the broadband torque"
                     => { 30 Noise torque_noise_nm within 2 };
                 torque_noise_s or_zero "s" [0.0, 10.0] "Correlation time of the broadband torque"
                     => { 31 Noise torque_noise_s or_none [1e-9, 10.0] 2 };
-                disturbance_wander or_zero "(no unit)" [0.0, 0.5] "RMS variation of the disturbance's frequency, part of it"
+                disturbance_wander or_zero "(no unit)" [0.0, 0.5]
+                    "RMS variation of the disturbance's frequency, part of it"
                     => { 34 Noise disturbance_wander "" within 2 };
-                scale_um_m or_zero "um/m" [-1e4, 1e4] "Scale error: extra travel of the tool beyond the encoder reading";
-                pitch_error_um or_zero "um" [0.0, 1e3] "Amplitude of the error within a turn of the screw";
-                max_velocity_mm_s optional "mm/s" [0.01, 1e4] "Highest speed, for planners that plan axis by axis; none is what limits and drive allow";
-                max_accel_mm_s2 optional "mm/s2" [0.1, 1e6] "Highest acceleration, for the same planners";
+                scale_um_m or_zero "um/m" [-1e4, 1e4]
+                    "Scale error: extra travel of the tool beyond the encoder reading";
+                pitch_error_um or_zero "um" [0.0, 1e3]
+                    "Amplitude of the error within a turn of the screw";
+                max_velocity_mm_s optional "mm/s" [0.01, 1e4]
+                    "Highest speed, for planners that plan axis by axis; none is what limits and \
+drive allow";
+                max_accel_mm_s2 optional "mm/s2" [0.1, 1e6]
+                    "Highest acceleration, for the same planners";
                 max_jerk_mm_s3 optional "mm/s3" [1.0, 1e9] "Highest jerk, for the same planners";
             }
             transmission {
-                table_share required "(no unit)" [0.01, 0.99] "Part of the axis's inertia on the table's side"
+                table_share required "(no unit)" [0.01, 0.99]
+                    "Part of the axis's inertia on the table's side"
                     => { 21 Screw table_share "" or_none 2 };
-                resonance_hz required "Hz" [0.1, 1e4] "Resonance of the table on the screw while the motor is held"
-                    => { 22 Screw resonance_rad_s "rad/s" or_none [1e-1, 1e6] 2 ("Resonance of the table on the screw while the motor is held", |_, screw| TAU * screw.resonance_hz) };
+                resonance_hz required "Hz" [0.1, 1e4]
+                    "Resonance of the table on the screw while the motor is held"
+                    => { 22 Screw resonance_rad_s "rad/s" or_none [1e-1, 1e6] 2
+                        ("Resonance of the table on the screw while the motor is held",
+                        |_, screw| TAU * screw.resonance_hz) };
                 damping_ratio required "(no unit)" [0.0, 1.0] "Damping ratio of that resonance"
                     => { 23 Screw damping_ratio "" within 2 };
                 backlash_um required "um" [0.0, 1e4] "Backlash"
-                    => { 24 Screw backlash_rad "rad" within [0.0, 1e3] 2 ("Backlash", |axis, screw| screw.backlash_um * 1e-3 * TAU / axis.lead_mm_per_rev) };
-                scale_on_table flag "(0 or 1)" [0.0, 1.0] "True if the position is measured at the table (a linear scale) instead of the motor";
+                    => { 24 Screw backlash_rad "rad" within [0.0, 1e3] 2
+                        ("Backlash",
+                        |axis, screw| screw.backlash_um * 1e-3 * TAU / axis.lead_mm_per_rev) };
+                scale_on_table flag "(0 or 1)" [0.0, 1.0]
+                    "True if the position is measured at the table (a linear scale) instead of \
+the motor";
             }
             model {
-                { 28 Noise interpolation_phase_rad "rad" within [-10.0, 10.0] 2 ("Phase of the encoder's error at angle zero") };
-                { 36 Noise cogging_phase_rad "rad" within [-10.0, 10.0] 2 ("Phase of the cogging torque at angle zero") };
+                { 28 Noise interpolation_phase_rad "rad" within [-10.0, 10.0] 2
+                    ("Phase of the encoder's error at angle zero") };
+                { 36 Noise cogging_phase_rad "rad" within [-10.0, 10.0] 2
+                    ("Phase of the cogging torque at angle zero") };
             }
         }
     };
@@ -185,7 +243,7 @@ macro_rules! first {
     };
 }
 
-/// Tells whether two words are the same.
+/// True for two equal words.
 macro_rules! is {
     (newer newer) => {
         true
@@ -201,8 +259,14 @@ macro_rules! is {
 /// Makes [`Parameters`] of the table.
 macro_rules! parameters {
     (
-        axis { $($key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)? $(=> { $($number:tt)* })?;)* }
-        transmission { $($screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(needs $screw_needed:ident)? $(=> { $($of_screw:tt)* })?;)* }
+        axis { $(
+            $key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)?
+            $(=> { $($number:tt)* })?;
+        )* }
+        transmission { $(
+            $screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal
+            $(=> { $($of_screw:tt)* })?;
+        )* }
         model { $({ $($own:tt)* };)* }
     ) => {
         parameters! { @
@@ -213,7 +277,9 @@ macro_rules! parameters {
     };
     (@ $({
         $key_unit:literal $key_range:tt $key_words:literal
-        $place:literal $part:ident $name:ident $($unit:literal)? $rule:ident $([$least:expr, $most:expr])? $format:literal $(($words:literal $(, $of:expr)?))?
+        $place:literal $part:ident $name:ident $($unit:literal)?
+        $rule:ident $([$least:expr, $most:expr])? $format:literal
+        $(($words:literal $(, $of:expr)?))?
     })*) => {
         /// The numbers of an axis at the motor shaft. Zero omits a part.
         #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -228,7 +294,15 @@ macro_rules! parameters {
             /// Stored numbers of an axis, in the order of a model block. The ranges are the ranges
             /// of a machine file, and exclude values that computation cannot use.
             pub const NUMBERS: &[Number] = &{
-                let none = Number { name: "", unit: "", range: [0.0; 2], or_none: false, optional: false, format: 0, of: |axis| &mut axis.kd };
+                let none = Number {
+                    name: "",
+                    unit: "",
+                    range: [0.0; 2],
+                    or_none: false,
+                    optional: false,
+                    format: 0,
+                    of: |axis| &mut axis.kd,
+                };
                 let mut numbers = [none; [$($place),*].len()];
                 $(
                     assert!(numbers[$place].name.is_empty(), "two numbers in one place");

@@ -56,12 +56,19 @@ const CONTOUR: &[Key<Weights>] = &[
 /// value per axis.
 macro_rules! axes_keys {
     (
-        axis { $($key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)? $(=> { $place:literal $($number:tt)* })?;)* }
-        transmission { $($screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(needs $screw_needed:ident)? $(=> { $screw_place:literal $($of_screw:tt)* })?;)* }
+        axis { $(
+            $key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)?
+            $(=> { $place:literal $($number:tt)* })?;
+        )* }
+        transmission { $(
+            $screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal
+            $(=> { $screw_place:literal $($of_screw:tt)* })?;
+        )* }
         model { $({ $own_place:literal $($own:tt)* };)* }
     ) => {
         const AXES: &[Key<Weights>] = &{
-            const FIRST: Key<Weights> = key!(mechanics_s, "s", MECHANICS_PERIODS_S[0], MECHANICS_PERIODS_S[1]);
+            const FIRST: Key<Weights> =
+                key!(mechanics_s, "s", MECHANICS_PERIODS_S[0], MECHANICS_PERIODS_S[1]);
             let mut keys = [FIRST; 1 + Parameters::NUMBERS.len()];
             $($(keys[1 + $place] = of_axes::<$place>();)?)*
             $($(keys[1 + $screw_place] = of_axes::<$screw_place>();)?)*

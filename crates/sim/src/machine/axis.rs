@@ -29,10 +29,18 @@ macro_rules! is_required {
 
 /// Key of a field, by its kind.
 macro_rules! of_kind {
-    (required $key:ident $unit:literal [$least:expr, $most:expr]) => { key!($key, $unit, $least, $most) };
-    (or_zero $key:ident $unit:literal [$least:expr, $most:expr]) => { key!($key or zero, $unit, $least, $most) };
-    (flag $key:ident $($range:tt)*) => { key!(flag $key) };
-    (optional $key:ident $unit:literal [$least:expr, $most:expr]) => { key!(optional $key, $unit, $least, $most) };
+    (required $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        key!($key, $unit, $least, $most)
+    };
+    (or_zero $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        key!($key or zero, $unit, $least, $most)
+    };
+    (flag $key:ident $($range:tt)*) => {
+        key!(flag $key)
+    };
+    (optional $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        key!(optional $key, $unit, $least, $most)
+    };
     (bits $key:ident $unit:literal [$least:expr, $most:expr]) => {
         Key {
             name: stringify!($key),
@@ -70,11 +78,20 @@ macro_rules! axis {
     (
         axis { $(
             $key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)?
-            $(=> { $place:literal $part:ident $name:ident $($own_unit:literal)? $rule:ident $([$least:expr, $most:expr])? $format:literal $(($own_words:literal, $of:expr))? })?;
+            $(=> {
+                $place:literal $part:ident $name:ident $($own_unit:literal)?
+                $rule:ident $([$least:expr, $most:expr])? $format:literal
+                $(($own_words:literal, $of:expr))?
+            })?;
         )* }
         transmission { $(
-            $screw_key:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal $(needs $screw_needed:ident)?
-            $(=> { $screw_place:literal $screw_part:ident $screw_name:ident $($screw_own_unit:literal)? $screw_rule:ident $([$screw_least:expr, $screw_most:expr])? $screw_format:literal $(($screw_own_words:literal, $of_screw:expr))? })?;
+            $screw_key:ident $screw_kind:ident $screw_unit:literal $screw_range:tt
+            $screw_words:literal
+            $(=> {
+                $screw_place:literal $screw_part:ident $screw_name:ident $($screw_own_unit:literal)?
+                $screw_rule:ident $([$screw_least:expr, $screw_most:expr])? $screw_format:literal
+                $(($screw_own_words:literal, $of_screw:expr))?
+            })?;
         )* }
         model { $($model:tt)* }
     ) => {

@@ -45,7 +45,7 @@ impl AxisFacts {
         Some(self.viscous? / self.inertia?)
     }
 
-    /// Returns what is stated of a term; of the gain of both loops that of the position loop.
+    /// Returns the stated value of a term, or the position gain for the gain of both loops.
     pub(super) fn known(&self, term: ModelTerm) -> Option<KnownValue> {
         match term {
             ModelTerm::LoopGain => self.kp_1_s,

@@ -40,7 +40,7 @@ impl Prior {
             .collect()
     }
 
-    /// What is stated of a term, or what is expected without that.
+    /// Returns the prior of a term: its stated value, or the expected one.
     fn of_term(term: ModelTerm, stated: Option<KnownValue>) -> Option<Self> {
         let about = |of, [value, spread]: [f64; 2]| Self {
             of,

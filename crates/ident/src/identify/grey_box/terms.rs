@@ -34,7 +34,7 @@ use feedwright_sim::{Axis, Transmission};
 use super::axis_record::LATEST_S;
 use crate::excite::MotionPart;
 
-/// What belongs to a term.
+/// Properties of a term.
 pub(super) struct TermRow {
     /// Key in files.
     key: &'static str,
@@ -68,7 +68,7 @@ pub(super) enum Expected {
     Size(fn(&TermValues) -> f64, [f64; 2]),
 }
 
-/// What the values depend on that a term is tried with.
+/// Properties of a record by which a term is tried.
 pub(super) struct Tried {
     pub(super) sample_s: f64,
     pub(super) damping_1_s: f64,
@@ -137,81 +137,170 @@ macro_rules! terms {
 
 terms! {
     /// Kp Kv / J, 1/s2.
-    LoopGain TermRow::new(["kp_kv_over_j_1_s2", "Kp Kv / J", "1/s2"], [0.1, 1e9], [0.01, 0.0], &[MotionPart::Reversals, MotionPart::Strokes], |axis, _| Some(axis.kp_1_s * axis.kv_nm_s_per_rad / axis.inertia_kg_m2))
-        .expected(Expected::Size(TermValues::kp_1_s, [50.0, 4.0]));
+    LoopGain TermRow::new(
+        ["kp_kv_over_j_1_s2", "Kp Kv / J", "1/s2"],
+        [0.1, 1e9], [0.01, 0.0], &[MotionPart::Reversals, MotionPart::Strokes],
+        |axis, _| Some(axis.kp_1_s * axis.kv_nm_s_per_rad / axis.inertia_kg_m2),
+    )
+    .expected(Expected::Size(TermValues::kp_1_s, [50.0, 4.0]));
     /// (Kv + B) / J, 1/s.
-    Damping TermRow::new(["kv_plus_b_over_j_1_s", "(Kv + B) / J", "1/s"], [0.1, 1e5], [0.01, 0.0], &[MotionPart::Reversals, MotionPart::Strokes], |axis, _| Some((axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / axis.inertia_kg_m2))
-        .expected(Expected::Size(|v| v.get(ModelTerm::Damping), [150.0, 5.0]));
+    Damping TermRow::new(
+        ["kv_plus_b_over_j_1_s", "(Kv + B) / J", "1/s"],
+        [0.1, 1e5], [0.01, 0.0], &[MotionPart::Reversals, MotionPart::Strokes],
+        |axis, _| Some((axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / axis.inertia_kg_m2),
+    )
+    .expected(Expected::Size(|v| v.get(ModelTerm::Damping), [150.0, 5.0]));
     /// Fc / J, mm/s2.
-    Coulomb TermRow::new(["fc_over_j_mm_s2", "Fc / J", "mm/s2"], [0.0, 1e6], [0.02, 1.0], &[MotionPart::Creeping, MotionPart::Reversals], |axis, _| Some(axis.coulomb_friction_nm / nm_per_mm_s2(axis)))
-        .expected(Expected::Size(|v| v.get(ModelTerm::Coulomb).max(LEAST_SIZE), [50.0, 30.0]));
+    Coulomb TermRow::new(
+        ["fc_over_j_mm_s2", "Fc / J", "mm/s2"],
+        [0.0, 1e6], [0.02, 1.0], &[MotionPart::Creeping, MotionPart::Reversals],
+        |axis, _| Some(axis.coulomb_friction_nm / nm_per_mm_s2(axis)),
+    )
+    .expected(Expected::Size(|v| v.get(ModelTerm::Coulomb).max(LEAST_SIZE), [50.0, 30.0]));
     /// Amount by which friction is higher in the positive direction and lower in the negative, over
     /// J, mm/s2.
-    Offset TermRow::new(["offset_over_j_mm_s2", "offset / J", "mm/s2"], [-1e6, 1e6], [0.0, 1.0], &[MotionPart::Creeping, MotionPart::Reversals], |axis, _| Some(axis.coulomb_asymmetry_nm / nm_per_mm_s2(axis)))
-        .expected(Expected::About(|v| v.get(ModelTerm::Offset) / (1.0 + v.get(ModelTerm::Coulomb)), [0.0, 0.3]));
+    Offset TermRow::new(
+        ["offset_over_j_mm_s2", "offset / J", "mm/s2"],
+        [-1e6, 1e6], [0.0, 1.0], &[MotionPart::Creeping, MotionPart::Reversals],
+        |axis, _| Some(axis.coulomb_asymmetry_nm / nm_per_mm_s2(axis)),
+    )
+    .expected(Expected::About(
+        |v| v.get(ModelTerm::Offset) / (1.0 + v.get(ModelTerm::Coulomb)),
+        [0.0, 0.3],
+    ));
     /// Delay of the recorded actual position behind the command, s.
-    RecordDelay TermRow::new(["record_delay_s", "delay of the record", "s"], [-0.05, LATEST_S], [0.0, 5e-5], &[MotionPart::Strokes], |_, _| None);
+    RecordDelay TermRow::new(
+        ["record_delay_s", "delay of the record", "s"],
+        [-0.05, LATEST_S], [0.0, 5e-5], &[MotionPart::Strokes],
+        |_, _| None,
+    );
     /// Delay within the loop, s.
-    LoopDelay TermRow::new(["loop_delay_s", "delay within the loop", "s"], [0.0, 0.02], [0.0, 1e-4], &[MotionPart::Strokes], |axis, _| Some(axis.drive_delay_s))
-        .expected(Expected::About(|v| v.get(ModelTerm::LoopDelay), [0.0, 0.002]))
-        .tried(|log| vec![0.5 * log.sample_s, 2.0 * log.sample_s]);
+    LoopDelay TermRow::new(
+        ["loop_delay_s", "delay within the loop", "s"],
+        [0.0, 0.02], [0.0, 1e-4], &[MotionPart::Strokes],
+        |axis, _| Some(axis.drive_delay_s),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::LoopDelay), [0.0, 0.002]))
+    .tried(|log| vec![0.5 * log.sample_s, 2.0 * log.sample_s]);
     /// Part of the command's speed that is fed forward.
-    VelocityFeedforward TermRow::new(["velocity_feedforward", "velocity feedforward", ""], [0.0, 2.0], [0.0, 0.01], &[MotionPart::Reversals], |axis, _| Some(axis.velocity_feedforward))
-        .expected(Expected::About(|v| v.get(ModelTerm::VelocityFeedforward), [0.5, 1.0]))
-        .tried(|_| vec![0.3, 0.95])
-        .in_file(Part::Drive, "velocity_feedforward", 1.0);
+    VelocityFeedforward TermRow::new(
+        ["velocity_feedforward", "velocity feedforward", ""],
+        [0.0, 2.0], [0.0, 0.01], &[MotionPart::Reversals],
+        |axis, _| Some(axis.velocity_feedforward),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::VelocityFeedforward), [0.5, 1.0]))
+    .tried(|_| vec![0.3, 0.95])
+    .in_file(Part::Drive, "velocity_feedforward", 1.0);
     /// Part of the command's acceleration that is fed forward.
-    AccelerationFeedforward TermRow::new(["acceleration_feedforward", "acceleration feedforward", ""], [0.0, 2.0], [0.0, 0.02], &[MotionPart::Strokes], |axis, _| Some(axis.acceleration_feedforward))
-        .expected(Expected::About(|v| v.get(ModelTerm::AccelerationFeedforward), [0.0, 0.7]))
-        .tried(|_| vec![0.5])
-        .in_file(Part::Drive, "acceleration_feedforward", 1.0);
+    AccelerationFeedforward TermRow::new(
+        ["acceleration_feedforward", "acceleration feedforward", ""],
+        [0.0, 2.0], [0.0, 0.02], &[MotionPart::Strokes],
+        |axis, _| Some(axis.acceleration_feedforward),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::AccelerationFeedforward), [0.0, 0.7]))
+    .tried(|_| vec![0.5])
+    .in_file(Part::Drive, "acceleration_feedforward", 1.0);
     /// 1 / Ti of the speed loop, 1/s.
-    Integral TermRow::new(["inverse_integral_time_1_s", "1 / Ti", "1/s"], [0.0, 2000.0], [0.02, 0.2], &[MotionPart::Strokes], |axis, _| Some(inverse(axis.speed_integral_s)))
-        .expected(Expected::About(|v| v.get(ModelTerm::Integral), [0.0, 150.0]))
-        .tried(|_| vec![10.0, 60.0]);
+    Integral TermRow::new(
+        ["inverse_integral_time_1_s", "1 / Ti", "1/s"],
+        [0.0, 2000.0], [0.02, 0.2], &[MotionPart::Strokes],
+        |axis, _| Some(inverse(axis.speed_integral_s)),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::Integral), [0.0, 150.0]))
+    .tried(|_| vec![10.0, 60.0]);
     /// Time constant of the torque filter, s.
-    FilterTime TermRow::new(["torque_filter_s", "torque filter", "s"], [0.0, 0.05], [0.0, 1e-4], &[MotionPart::Strokes], |axis, _| Some(inverse(axis.torque_filter_hz) / TAU))
-        .expected(Expected::About(|v| v.get(ModelTerm::FilterTime), [0.0, 5e-4]))
-        .tried(|log| vec![0.2 * log.sample_s, log.sample_s]);
+    FilterTime TermRow::new(
+        ["torque_filter_s", "torque filter", "s"], [0.0, 0.05], [0.0, 1e-4], &[MotionPart::Strokes],
+        |axis, _| Some(inverse(axis.torque_filter_hz) / TAU),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::FilterTime), [0.0, 5e-4]))
+    .tried(|log| vec![0.2 * log.sample_s, log.sample_s]);
     /// Time over which the drive takes the speed from positions, s.
-    SpeedWindow TermRow::new(["speed_window_s", "window of the speed", "s"], [0.0, 0.02], [0.0, 1e-4], &[MotionPart::Strokes], |axis, _| Some(axis.speed_window_s));
+    SpeedWindow TermRow::new(
+        ["speed_window_s", "window of the speed", "s"],
+        [0.0, 0.02], [0.0, 1e-4], &[MotionPart::Strokes],
+        |axis, _| Some(axis.speed_window_s),
+    );
     /// Highest reference speed, mm/s; zero means no limit.
-    SpeedLimit TermRow::new(["speed_limit_mm_s", "speed limit", "mm/s"], [0.0, 1e4], [0.005, 0.0], &[MotionPart::Reversals], |axis, _| Some(axis.speed_limit_mm_s))
-        .tried(|log| vec![AT_LIMIT * log.fastest_mm_s])
-        .in_file(Part::Drive, "speed_limit_mm_s", 1.0);
+    SpeedLimit TermRow::new(
+        ["speed_limit_mm_s", "speed limit", "mm/s"],
+        [0.0, 1e4], [0.005, 0.0], &[MotionPart::Reversals],
+        |axis, _| Some(axis.speed_limit_mm_s),
+    )
+    .tried(|log| vec![AT_LIMIT * log.fastest_mm_s])
+    .in_file(Part::Drive, "speed_limit_mm_s", 1.0);
     /// Highest torque over the inertia, mm/s2; zero means no limit.
-    AccelerationLimit TermRow::new(["torque_limit_over_j_mm_s2", "torque limit / J", "mm/s2"], [0.0, 1e7], [0.01, 0.0], &[MotionPart::Strokes], |_, _| None)
-        .tried(|log| vec![0.9 * log.acceleration_mm_s2]);
+    AccelerationLimit TermRow::new(
+        ["torque_limit_over_j_mm_s2", "torque limit / J", "mm/s2"],
+        [0.0, 1e7], [0.01, 0.0], &[MotionPart::Strokes],
+        |_, _| None,
+    )
+    .tried(|log| vec![0.9 * log.acceleration_mm_s2]);
     /// Deflection before friction slides, mm.
-    Presliding TermRow::new(["presliding_mm", "presliding", "mm"], [0.0, 1.0], [0.05, 2e-4], &[MotionPart::Creeping], |axis, _| Some(1e-3 * axis.presliding_um))
-        .expected(Expected::About(|v| v.get(ModelTerm::Presliding), [0.0, 0.03]))
-        .tried(|_| vec![0.003, 0.03])
-        .in_file(Part::Friction, "presliding_um", 1e3);
+    Presliding TermRow::new(
+        ["presliding_mm", "presliding", "mm"], [0.0, 1.0], [0.05, 2e-4], &[MotionPart::Creeping],
+        |axis, _| Some(1e-3 * axis.presliding_um),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::Presliding), [0.0, 0.03]))
+    .tried(|_| vec![0.003, 0.03])
+    .in_file(Part::Friction, "presliding_um", 1e3);
     /// Excess of friction at rest over Fc, as a part of Fc.
-    Stribeck TermRow::new(["stribeck_part", "Stribeck", ""], [0.0, 2.0], [0.0, 0.05], &[MotionPart::Creeping], |axis, _| Some(axis.stribeck_nm * inverse(axis.coulomb_friction_nm)))
-        .expected(Expected::About(|v| v.get(ModelTerm::Stribeck), [0.0, 0.5]))
-        .tried(|_| vec![0.3]);
+    Stribeck TermRow::new(
+        ["stribeck_part", "Stribeck", ""], [0.0, 2.0], [0.0, 0.05], &[MotionPart::Creeping],
+        |axis, _| Some(axis.stribeck_nm * inverse(axis.coulomb_friction_nm)),
+    )
+    .expected(Expected::About(|v| v.get(ModelTerm::Stribeck), [0.0, 0.5]))
+    .tried(|_| vec![0.3]);
     /// Speed over which this excess decays, mm/s.
-    StribeckSpeed TermRow::new(["stribeck_mm_s", "Stribeck speed", "mm/s"], [0.2, 1e3], [0.1, 0.02], &[MotionPart::Creeping], |axis, _| Some(axis.stribeck_mm_s))
-        .expected(Expected::Size(|v| v.get(ModelTerm::StribeckSpeed).max(LEAST_SIZE), [2.0, 2.5]));
+    StribeckSpeed TermRow::new(
+        ["stribeck_mm_s", "Stribeck speed", "mm/s"],
+        [0.2, 1e3], [0.1, 0.02], &[MotionPart::Creeping],
+        |axis, _| Some(axis.stribeck_mm_s),
+    )
+    .expected(Expected::Size(|v| v.get(ModelTerm::StribeckSpeed).max(LEAST_SIZE), [2.0, 2.5]));
     /// B / J, 1/s.
-    Viscous TermRow::new(["b_over_j_1_s", "B / J", "1/s"], [0.0, 1e4], [0.02, 0.2], &[MotionPart::Reversals], |axis, _| Some(axis.viscous_friction_nm_s / axis.inertia_kg_m2))
-        .expected(Expected::About(|v| v.get(ModelTerm::Viscous) / v.get(ModelTerm::Damping), [0.0, 0.05]))
-        .tried(|log| vec![0.03 * log.damping_1_s]);
+    Viscous TermRow::new(
+        ["b_over_j_1_s", "B / J", "1/s"], [0.0, 1e4], [0.02, 0.2], &[MotionPart::Reversals],
+        |axis, _| Some(axis.viscous_friction_nm_s / axis.inertia_kg_m2),
+    )
+    .expected(Expected::About(
+        |v| v.get(ModelTerm::Viscous) / v.get(ModelTerm::Damping),
+        [0.0, 0.05],
+    ))
+    .tried(|log| vec![0.03 * log.damping_1_s]);
     /// Time constant of the resonance of the table on the screw, motor held: 1 / (2 pi f), s.
-    Resonance TermRow::new(["resonance_time_s", "time constant of the resonance", "s"], [0.0, 0.008], [0.03, 1e-5], &[MotionPart::Strokes], |axis, _| axis.transmission.map(|screw| 1.0 / (TAU * screw.resonance_hz)))
-        .tried(|_| vec![1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)]);
+    Resonance TermRow::new(
+        ["resonance_time_s", "time constant of the resonance", "s"],
+        [0.0, 0.008], [0.03, 1e-5], &[MotionPart::Strokes],
+        |axis, _| axis.transmission.map(|screw| 1.0 / (TAU * screw.resonance_hz)),
+    )
+    .tried(|_| vec![1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)]);
     /// Part of the inertia that is on the table's side of the screw.
-    TableShare TermRow::new(["table_share", "part of J at the table", ""], [0.05, 0.95], [0.0, 0.03], &[MotionPart::Strokes], |axis, _| axis.transmission.map(|screw| screw.table_share));
+    TableShare TermRow::new(
+        ["table_share", "part of J at the table", ""],
+        [0.05, 0.95], [0.0, 0.03], &[MotionPart::Strokes],
+        |axis, _| axis.transmission.map(|screw| screw.table_share),
+    );
     /// Backlash, mm.
-    Backlash TermRow::new(["backlash_mm", "backlash", "mm"], [0.0, 0.2], [0.05, 2e-4], &[MotionPart::Creeping], |axis, _| axis.transmission.map(|screw| 1e-3 * screw.backlash_um))
-        .tried(|_| vec![0.003, 0.02]);
+    Backlash TermRow::new(
+        ["backlash_mm", "backlash", "mm"], [0.0, 0.2], [0.05, 2e-4], &[MotionPart::Creeping],
+        |axis, _| axis.transmission.map(|screw| 1e-3 * screw.backlash_um),
+    )
+    .tried(|_| vec![0.003, 0.02]);
     /// Servo period at which the drive takes the speed, s; zero is a drive that sees it all the
     /// time. Given, never fitted.
-    SpeedHold TermRow::new(["speed_hold_s", "the speed is taken every", "s"], [0.0, 0.1], [0.0, 1e-4], &[MotionPart::Strokes], |axis, servo_s| Some(if axis.speed_held { servo_s } else { 0.0 }));
+    SpeedHold TermRow::new(
+        ["speed_hold_s", "the speed is taken every", "s"],
+        [0.0, 0.1], [0.0, 1e-4], &[MotionPart::Strokes],
+        |axis, servo_s| Some(if axis.speed_held { servo_s } else { 0.0 }),
+    );
     /// Delay from the control to a position loop in the drive, s: whole servo periods. Chosen,
     /// never fitted.
-    CommandDelay TermRow::new(["command_delay_s", "delay before the position loop", "s"], [0.0, 0.02], [0.0, 1e-4], &[MotionPart::Strokes], |axis, servo_s| Some(axis.parameters().command_periods(servo_s) as f64 * servo_s));
+    CommandDelay TermRow::new(
+        ["command_delay_s", "delay before the position loop", "s"],
+        [0.0, 0.02], [0.0, 1e-4], &[MotionPart::Strokes],
+        |axis, servo_s| Some(axis.parameters().command_periods(servo_s) as f64 * servo_s),
+    );
 }
 
 /// Number of terms.
