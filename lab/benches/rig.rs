@@ -2,10 +2,9 @@
 //! and a network.
 
 use feedwright_control::{
-    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator,
-    IDENTIFIED_WEIGHT, Inputs, InvertingSettings, Knot, KnotSource, LqgIdentified, LqgSettings,
-    Measured, OffsetBounds, Parameters, Periods, Preview, Register, Setpoint, Tick,
-    TransmissionParameters, TwoDimensional, Window,
+    AxisModel, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_WEIGHT,
+    Inputs, InvertingSettings, Knot, KnotSource, LqgIdentified, LqgSettings, Measured,
+    OffsetBounds, Parameters, Periods, Preview, Register, Setpoint, Tick, TwoDimensional, Window,
 };
 
 /// The circle of eq. 11 at 50 mm/s.
@@ -47,13 +46,7 @@ pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
 /// the tool of a [`Rig`]. Each has noise, a disturbance and, with `gives`, a ball screw with
 /// backlash. The regulator decides in every servo period.
 pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgIdentified<N> {
-    let mut axis = AxisKnowledge::NOTHING;
-    axis.periods = Periods {
-        servo_s: 0.001,
-        mechanics_s: 1e-4,
-        mechanics_per_servo: 10,
-    };
-    axis.parameters = Parameters {
+    let mut axis = Parameters {
         rad_per_mm: 0.628,
         kp_1_s: 1.0 / LAG_S,
         kd: 0.0,
@@ -63,30 +56,28 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgIdentified<N> {
         viscous_friction_nm_s: 0.0,
         coulomb_friction_nm: 0.0,
         coulomb_smoothing_rad_s: 0.05,
+        presliding_rad: 1e-4,
+        encoder_noise_rad: 1e-4,
+        torque_noise_nm: 0.1,
+        disturbance_nm: 0.01,
+        disturbance_rad_s: 150.0,
+        ..Parameters::NOTHING
     };
-    axis.friction.presliding_rad = 1e-4;
-    (
-        axis.statistics.encoder_noise_rad,
-        axis.statistics.torque_noise_nm,
-    ) = (1e-4, 0.1);
-    (
-        axis.statistics.disturbance_nm,
-        axis.statistics.disturbance_rad_s,
-    ) = (0.01, 150.0);
     if gives {
-        axis.transmission = TransmissionParameters {
-            table_share: 0.4,
-            resonance_rad_s: 600.0,
-            damping_ratio: 0.05,
-            backlash_rad: 0.002,
-        };
+        (axis.table_share, axis.resonance_rad_s) = (0.4, 600.0);
+        (axis.damping_ratio, axis.backlash_rad) = (0.05, 0.002);
     }
+    let periods = Periods {
+        servo_s: 0.001,
+        mechanics_s: 1e-4,
+        mechanics_per_servo: 10,
+    };
     let bounds = OffsetBounds {
         largest_mm: 0.5,
         fastest_mm_s: 400.0,
     };
     let settings = LqgSettings::identified(IDENTIFIED_WEIGHT.default, 1e-3, bounds);
-    LqgIdentified::new([axis; N], settings)
+    LqgIdentified::new([AxisModel::new(axis, periods); N], settings)
 }
 
 /// Behavior of the tool of a [`Rig`]; it lags by 20 ms in either case.

@@ -7,9 +7,9 @@ use std::process::Command;
 
 use crate::cut::cut;
 use crate::python::python;
-use feedwright_control::{LqgGains, LqgIdentified, LqgSettings};
+use feedwright_control::{AxisModel, LqgGains, LqgIdentified, LqgSettings, Part};
 use feedwright_lab::CONTROLLERS;
-use feedwright_sim::{KnownAxis, Machine};
+use feedwright_sim::Machine;
 
 /// tnv40 without the disturbance, linear once it moves, under noise: encoder and torque; what
 /// stands in place of `DISTURBANCE` is beside.
@@ -111,14 +111,12 @@ fn the_gains_are_those_of_the_script() {
     ] {
         std::fs::write(&file, NOISY.replace("DISTURBANCE", disturbance) + screws).unwrap();
         let machine = Machine::read(&file).unwrap();
-        let (known, statistics) = (machine.known(), machine.statistics::<2>());
-        let periods = known.period.periods();
+        let known = machine.known();
         let axes = std::array::from_fn(|i| {
-            let axis = KnownAxis {
-                transmission: machine.axes[i].transmission(),
-                ..*known.axis(i)
-            };
-            axis.with_statistics(periods, statistics[i])
+            let parts = [Part::Screw, Part::Noise];
+            let all = machine.axes[i].parameters();
+            let axis = known.axis(i).nominal.taking(&parts, &all);
+            AxisModel::new(axis, known.period.periods())
         });
         let limit = LqgIdentified::<2>::new(axes, LqgSettings::DEFAULT);
         for (LqgGains { filter, regulator }, axis) in limit.gains().iter().zip(["x", "y"]) {

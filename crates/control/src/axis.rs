@@ -27,39 +27,16 @@
 //! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts. The
 //! equations have the usual form for such a loop.
 
+pub(crate) mod numbers;
 pub(crate) mod drive;
 pub(crate) mod friction;
 pub(crate) mod transmission;
 pub(crate) mod mechanics;
 pub(crate) mod delays;
 pub(crate) mod inverse;
-pub(crate) mod statistics;
-pub(crate) mod knowledge;
 
 use crate::activation::tanh;
-
-/// Parameters of an axis at the motor shaft.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameters {
-    /// Turn of the motor for a travel of the table, rad/mm.
-    pub rad_per_mm: f64,
-    /// Proportional gain of the position loop, 1/s.
-    pub kp_1_s: f64,
-    /// Derivative gain of the position loop, dimensionless.
-    pub kd: f64,
-    /// Gain of the speed loop, N m s/rad.
-    pub kv_nm_s_per_rad: f64,
-    /// Torque at which the drive saturates, N m.
-    pub torque_limit_nm: f64,
-    /// Inertia, kg m2.
-    pub inertia_kg_m2: f64,
-    /// Viscous friction, N m s/rad.
-    pub viscous_friction_nm_s: f64,
-    /// Coulomb friction, N m.
-    pub coulomb_friction_nm: f64,
-    /// Speed over which the Coulomb friction changes sign, rad/s.
-    pub coulomb_smoothing_rad_s: f64,
-}
+pub(crate) use numbers::Parameters;
 
 /// Periods of the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,6 +80,14 @@ impl AxisModel {
             inverse_inertia: 1.0 / parameters.inertia_kg_m2,
             inverse_smoothing_s: 1.0 / parameters.coulomb_smoothing_rad_s,
         }
+    }
+
+    /// Returns the same axis with other numbers.
+    #[must_use]
+    pub fn with(&self, change: impl FnOnce(&mut Parameters)) -> Self {
+        let mut parameters = self.parameters;
+        change(&mut parameters);
+        Self::new(parameters, self.periods)
     }
 
     /// Passes a position error, rad, to the PD position loop. Returns the reference speed, rad/s.
@@ -194,6 +179,7 @@ mod tests {
             viscous_friction_nm_s: 0.03,
             coulomb_friction_nm: 0.2,
             coulomb_smoothing_rad_s: 0.5,
+            ..Parameters::NOTHING
         };
         AxisModel::new(
             parameters,

@@ -14,7 +14,7 @@ pub(crate) mod two_dimensional;
 
 use core::ops::{Deref, DerefMut};
 
-use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::AxisModel;
 use crate::command::{Command, Measured, SelfReport};
 use crate::window::Window;
 use feedforward::Feedforward;
@@ -84,7 +84,7 @@ pub trait Controller<const N: usize> {
     }
     /// Returns the axes as the controller knows them now, if it uses such knowledge. A controller
     /// that learns returns other axes than the ones of its construction.
-    fn known(&self) -> Option<[AxisKnowledge; N]> {
+    fn known(&self) -> Option<[AxisModel; N]> {
         None
     }
     /// Decides the command of the next feed period.

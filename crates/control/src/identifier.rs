@@ -4,7 +4,7 @@
 //! | Kind | Prediction | Interface | Used by |
 //! |---|---|---|---|
 //! | contour | the contour error, as the paper does | [`ContourModel`] | [`crate::inversion`] |
-//! | axes | the motion of each axis, by its model | [`crate::axis::knowledge::AxisKnowledge`] | [`crate::controller::lqg_identified`] |
+//! | axes | the motion of each axis, by its model | [`crate::axis::Parameters`] | [`crate::controller::lqg_identified`] |
 //!
 //! All use the same inputs of each axis, from a shift register ([`Delays`]): F(k), F(k-1), F(k-2)
 //! and two delays of the error, where F(k) is the feedrate from knot k to knot k + 1. A controller

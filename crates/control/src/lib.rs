@@ -48,7 +48,7 @@
 //! | Making one | [`AnyController`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
 //! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`], [`FaultEvidence`] |
-//! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
+//! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`Number`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`TrainedModel`], [`ModelBlock`] |
 //!
 //! [`ModelBlock::from_bytes`] reads a trained model from bytes, so that a servo thread needs no
@@ -95,15 +95,14 @@ mod supervisor;
 mod controller;
 mod tick;
 
-pub use axis::delays::{CommandQueue, LoopDelays, MAX_COMMAND_PERIODS};
-pub use axis::drive::{DriveModel, DriveParameters, DriveReference, DriveState};
-pub use axis::friction::{FrictionModel, FrictionParameters};
+pub use axis::delays::{CommandQueue, MAX_COMMAND_PERIODS};
+pub use axis::drive::{DriveModel, DriveReference, DriveState};
+pub use axis::friction::FrictionModel;
 pub use axis::inverse::{AxisInverse, Gains};
-pub use axis::knowledge::{AxisKnowledge, Number, position_gains_1_s};
 pub use axis::mechanics::{MechanicsModel, MechanicsState};
-pub use axis::statistics::AxisStatistics;
-pub use axis::transmission::{TableState, TransmissionModel, TransmissionParameters};
-pub use axis::{AxisModel, AxisState, Parameters, Periods, friction_signs};
+pub use axis::numbers::{Number, Parameters, Part, position_gains_1_s};
+pub use axis::transmission::{TableState, TransmissionModel};
+pub use axis::{AxisModel, AxisState, Periods, friction_signs};
 pub use command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{

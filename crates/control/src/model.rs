@@ -15,14 +15,14 @@
 //!
 //! The numbers of a contour identifier are its weights, group by group in the order of
 //! [`Identifier::weights`], and from format 5 on the response time of the speed loops, s. The
-//! numbers of axes are the mechanics period, s, and then
-//! [`AxisKnowledge::NUMBERS`], axis by axis. [`Number::format`] is the first format that has a
-//! number; in an earlier block the number is missing and zero. After the model, a block of format 4
-//! has the geometry that the control compensates: of each axis its scale, the amplitude of its
-//! pitch error (mm), its phase for a travel (rad/mm) and at position 0 (rad); the three angles of
-//! squareness, rad; and row by row the tables of the errors of a coordinate over a joint, each as
-//! the number of its points, 0 without a table, and position and error (mm) of each point. A block
-//! has the lowest format that holds its content.
+//! numbers of axes are the mechanics period, s, and then [`Parameters::NUMBERS`], axis by axis.
+//! [`Number::format`] is the first format that has a number; in an earlier block the number is
+//! missing and zero. After the model, a block of format 4 has the geometry that the control
+//! compensates: of each axis its scale, the amplitude of its pitch error (mm), its phase for a
+//! travel (rad/mm) and at position 0 (rad); the three angles of squareness, rad; and row by row the
+//! tables of the errors of a coordinate over a joint, each as the number of its points, 0 without a
+//! table, and position and error (mm) of each point. A block has the lowest format that holds its
+//! content.
 //!
 //! Integers are unsigned; all other numbers are IEEE 754 double precision. Everything is
 //! little-endian. [`ModelBlock::from_bytes`] needs no memory beyond its result and never panics,
@@ -30,8 +30,8 @@
 
 use core::{fmt, slice};
 
-use crate::axis::Periods;
-use crate::axis::knowledge::{AxisKnowledge, Number};
+use crate::axis::numbers::{Number, Parameters};
+use crate::axis::{AxisModel, Periods};
 use crate::geometry::KnownGeometry;
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
@@ -80,10 +80,7 @@ pub struct TrainedModel<const N: usize> {
 impl<const N: usize> TrainedModel<N> {
     /// Creates the model of these axes, whose controller decides in every servo period.
     pub fn of_axes(identified: IdentifiedAxes<N>) -> Self {
-        let servo_s = identified
-            .axes
-            .first()
-            .map_or(0.0, |axis| axis.periods.servo_s);
+        let servo_s = identified.periods.servo_s;
         Self {
             servo_s,
             feed_period_s: servo_s,
@@ -105,17 +102,21 @@ pub struct ModelBlock<const N: usize> {
 /// Identified axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IdentifiedAxes<const N: usize> {
-    /// Period of the speed loop and of the integration, s.
-    pub mechanics_s: f64,
-    /// Identified parameters of each axis, with the settings of its drive.
-    pub axes: [AxisKnowledge; N],
+    /// Periods of the loops.
+    pub periods: Periods,
+    /// Identified numbers of each axis, with the settings of its drive.
+    pub axes: [Parameters; N],
 }
 
 impl<const N: usize> IdentifiedAxes<N> {
     /// Model whose numbers are all zero.
     pub const NULL: Self = Self {
-        mechanics_s: 0.0,
-        axes: [AxisKnowledge::NOTHING; N],
+        periods: Periods {
+            servo_s: 0.0,
+            mechanics_s: 0.0,
+            mechanics_per_servo: 0,
+        },
+        axes: [Parameters::NOTHING; N],
     };
 
     /// Passes its numbers to `each` in the order of the block, each with its bounds.
@@ -123,10 +124,10 @@ impl<const N: usize> IdentifiedAxes<N> {
         let [least, most] = MECHANICS_PERIODS_S;
         each(
             &NumberBounds::Within(least, most),
-            slice::from_mut(&mut self.mechanics_s),
+            slice::from_mut(&mut self.periods.mechanics_s),
         );
         for axis in &mut self.axes {
-            for number in AxisKnowledge::NUMBERS {
+            for number in Parameters::NUMBERS {
                 each(
                     &NumberBounds::Of(number),
                     slice::from_mut((number.of)(axis)),
@@ -135,32 +136,34 @@ impl<const N: usize> IdentifiedAxes<N> {
         }
     }
 
-    /// Sets the periods of the axes. Returns `None` where the servo period is no whole multiple of
-    /// the mechanics period, or contains more than [`MAX_MECHANICS_PER_SERVO`] of them.
+    /// Returns the axes at a servo period. Returns `None` where it is no whole multiple of the
+    /// mechanics period, or contains more than [`MAX_MECHANICS_PER_SERVO`] of them.
     #[must_use]
-    pub fn with_periods(mut self, servo_s: f64) -> Option<Self> {
-        let ratio = servo_s / self.mechanics_s;
+    pub fn at_servo_period(mut self, servo_s: f64) -> Option<Self> {
+        let ratio = servo_s / self.periods.mechanics_s;
         let whole = libm::round(ratio);
         // A NaN ratio fails this comparison.
         let is_whole = libm::fabs(ratio - whole) <= WHOLE_RATIO_TOLERANCE * ratio;
         if !(is_whole && (1.0..=MAX_MECHANICS_PER_SERVO).contains(&whole)) {
             return None;
         }
-        let periods = Periods {
-            servo_s,
-            mechanics_s: self.mechanics_s,
-            mechanics_per_servo: whole as u32,
-        };
-        self.axes.iter_mut().for_each(|axis| axis.periods = periods);
+        (self.periods.servo_s, self.periods.mechanics_per_servo) = (servo_s, whole as u32);
         Some(self)
+    }
+
+    /// Returns the models of the axes.
+    pub fn axis_models(&self) -> [AxisModel; N] {
+        self.axes
+            .map(|parameters| AxisModel::new(parameters, self.periods))
     }
 
     /// Returns true if all of its numbers are within their ranges at this servo period.
     pub fn are_possible(&self, servo_s: f64) -> bool {
         let [least, most] = MECHANICS_PERIODS_S;
-        let is_possible = self.mechanics_s >= least && self.mechanics_s <= most;
-        is_possible
-            && self.with_periods(servo_s).is_some()
+        let mechanics_s = self.periods.mechanics_s;
+        mechanics_s >= least
+            && mechanics_s <= most
+            && self.at_servo_period(servo_s).is_some()
             && self.axes.iter().all(|axis| axis.is_possible())
     }
 }
@@ -291,7 +294,7 @@ impl<const N: usize> ModelBlock<N> {
         fault.map_or(Ok(()), Err)?;
         if let Trained::Axes(axes) = &mut trained {
             // The mechanics period is the first number after the two other periods.
-            *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
+            *axes = axes.at_servo_period(servo_s).ok_or(BlockError::Number(2))?;
         }
         let geometry = if has_geometry {
             Some(rest.geometry()?)
@@ -524,18 +527,16 @@ mod tests {
     /// Each number within its range, and all different.
     fn axes<const N: usize>() -> ModelBlock<N> {
         let mut next = sequence();
-        let mut axes = IdentifiedAxes {
-            mechanics_s: 1e-4,
-            axes: [AxisKnowledge::NOTHING; N],
-        };
+        let mut axes = IdentifiedAxes::<N>::NULL;
+        axes.periods.mechanics_s = 1e-4;
         for axis in &mut axes.axes {
-            for number in AxisKnowledge::NUMBERS {
+            for number in Parameters::NUMBERS {
                 let [least, most] = number.range;
                 *(number.of)(axis) = least + (0.1 + 0.05 * next()) * (most.min(1.0) - least);
             }
         }
         ModelBlock {
-            model: TrainedModel::of_axes(axes.with_periods(0.001).unwrap()),
+            model: TrainedModel::of_axes(axes.at_servo_period(0.001).unwrap()),
             geometry: None,
         }
     }
@@ -613,18 +614,15 @@ mod tests {
         };
         let at =
             |index: usize| f64::from_le_bytes(bytes[40 + 8 * index..][..8].try_into().unwrap());
-        let count = AxisKnowledge::NUMBERS.len();
+        let count = Parameters::NUMBERS.len();
         assert_eq!(
             (bytes[12], at(0), bytes.len()),
             (3, 1e-4, 40 + 8 * (1 + 3 * count) + 4)
         );
-        assert_eq!(at(1), identified.axes[0].parameters.rad_per_mm);
-        assert_eq!(at(1 + 10), identified.axes[0].drive.speed_window_s);
-        assert_eq!(
-            at(1 + count + 13),
-            identified.axes[1].parameters.inertia_kg_m2
-        );
-        assert_eq!(at(3 * count), identified.axes[2].delays.command_s);
+        assert_eq!(at(1), identified.axes[0].rad_per_mm);
+        assert_eq!(at(1 + 10), identified.axes[0].speed_window_s);
+        assert_eq!(at(1 + count + 13), identified.axes[1].inertia_kg_m2);
+        assert_eq!(at(3 * count), identified.axes[2].command_delay_s);
     }
 
     #[test]
@@ -637,7 +635,7 @@ mod tests {
         identified
             .axes
             .iter_mut()
-            .for_each(|axis| axis.delays.command_s = 0.0);
+            .for_each(|axis| axis.command_delay_s = 0.0);
         let without = block(&model);
         assert_eq!(
             (with[8], without[8], with.len() - without.len()),
@@ -833,8 +831,8 @@ mod tests {
         let read =
             |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
         for axis in 0..2 {
-            for (i, number) in AxisKnowledge::NUMBERS.iter().enumerate() {
-                let index = 3 + axis * AxisKnowledge::NUMBERS.len() + i;
+            for (i, number) in Parameters::NUMBERS.iter().enumerate() {
+                let index = 3 + axis * Parameters::NUMBERS.len() + i;
                 let [least, most] = number.range;
                 for value in [
                     f64::NAN,
@@ -894,12 +892,7 @@ mod tests {
             let Ok(Trained::Axes(axes)) = read(fine_s).map(|block| block.model.trained) else {
                 panic!("{fine_s}")
             };
-            assert!(
-                axes.axes
-                    .iter()
-                    .all(|axis| axis.periods.mechanics_per_servo == periods),
-                "{fine_s}"
-            );
+            assert_eq!(axes.periods.mechanics_per_servo, periods, "{fine_s}");
         }
         // The longest servo period has a million of the shortest.
         let longest = with_number(with_number(bytes.clone(), 0, 0.1), 2, 1e-7);

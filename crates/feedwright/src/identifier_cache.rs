@@ -3,10 +3,7 @@
 //! of machine, plant or planner finds old weights. Identified axes are found by the program that
 //! identified them alone.
 
-use feedwright_control::{
-    ContourIdentifier, DriveParameters, FrictionParameters, HIDDEN, INPUTS, LoopDelays, Parameters,
-    TransmissionParameters,
-};
+use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS, Parameters};
 use feedwright_ident::{
     AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, TrainedAxes,
     TrainedContour, Training, train_axes, train_contour,
@@ -139,83 +136,21 @@ fn content(known: &Known, axes: usize) -> Value {
 fn numbers(axis: &KnownAxis) -> Value {
     let KnownAxis {
         lead_mm_per_rev,
-        nominal,
-        drive,
-        friction,
-        transmission,
-        delays,
+        mut nominal,
         scale_on_table,
         correction_accel_mm_s2,
         spare_torque_nm,
     } = *axis;
-    let Parameters {
-        rad_per_mm,
-        kp_1_s,
-        kd,
-        kv_nm_s_per_rad,
-        torque_limit_nm,
-        inertia_kg_m2,
-        viscous_friction_nm_s,
-        coulomb_friction_nm,
-        coulomb_smoothing_rad_s,
-    } = nominal;
-    let DriveParameters {
-        speed_integral_s,
-        velocity_feedforward,
-        acceleration_feedforward,
-        torque_filter_hz,
-        speed_limit_rad_s,
-        speed_window_s,
-    } = drive;
-    let FrictionParameters {
-        coulomb_asymmetry_nm,
-        stribeck_nm,
-        stribeck_rad_s,
-        presliding_rad,
-    } = friction;
-    let TransmissionParameters {
-        table_share,
-        resonance_rad_s,
-        damping_ratio,
-        backlash_rad,
-    } = transmission;
-    let LoopDelays {
-        command_s,
-        drive_s,
-        measurement_s,
-    } = delays;
+    let of_model: Vec<f64> = Parameters::NUMBERS
+        .iter()
+        .map(|number| *(number.of)(&mut nominal))
+        .collect();
     json!([
         lead_mm_per_rev,
         scale_on_table,
         correction_accel_mm_s2,
         spare_torque_nm,
-        [
-            rad_per_mm,
-            kp_1_s,
-            kd,
-            kv_nm_s_per_rad,
-            torque_limit_nm,
-            inertia_kg_m2,
-            viscous_friction_nm_s,
-            coulomb_friction_nm,
-            coulomb_smoothing_rad_s
-        ],
-        [
-            speed_integral_s,
-            velocity_feedforward,
-            acceleration_feedforward,
-            torque_filter_hz,
-            speed_limit_rad_s,
-            speed_window_s
-        ],
-        [
-            coulomb_asymmetry_nm,
-            stribeck_nm,
-            stribeck_rad_s,
-            presliding_rad
-        ],
-        [table_share, resonance_rad_s, damping_ratio, backlash_rad],
-        [command_s, drive_s, measurement_s]
+        of_model
     ])
 }
 

@@ -6,7 +6,7 @@
 //! and measured positions alone.
 //!
 //! ```
-//! use feedwright_ident::{DriveSettings, Excitation, identify_axis};
+//! use feedwright_ident::{Excitation, identify_axis};
 //! use feedwright_sim::Machine;
 //!
 //! let machine = Machine::load("tnv40".as_ref())?;
@@ -14,8 +14,7 @@
 //! let excitation = Excitation { laps: 8, ..Excitation::axis_parameters(&machine) };
 //! let (recording, _) = excitation.record::<2>(&machine, 1);
 //!
-//! let settings = DriveSettings::of(machine.known().axis(0), &machine.period);
-//! let found = identify_axis(&recording, 0, &settings)?;
+//! let found = identify_axis(&recording, 0, &machine.known())?;
 //! println!("{:?}, {:.3} um left", found.parameters, found.left_um);
 //!
 //! let true_kg_m2 = machine.axis(0).inertia_kg_m2;
@@ -36,7 +35,7 @@
 //! | Logs | [`Log`], [`LogAxis`], [`LogFormat`], [`Columns`], [`LogFinding`], [`LogError`], [`Fitness`] |
 //! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`ModelVerdict`], [`SearchBound`] |
 //! | Simulated machine | [`Excitation`], [`Recording`] |
-//! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
+//! | Axis with known drive settings | [`identify_axis`], [`AxisEstimate`], [`NotIdentified`] |
 //! | Models for controllers | [`train_axes`], [`train_contour`], [`axis_statistics`] |
 //! | Model files | [`Model`], [`Origin`], [`exact_block`] |
 //! | Geometry from measurements | [`GeometryInput`], [`fit_geometry`], [`FoundGeometry`], [`Circularity`], [`comp_file`] |
@@ -91,9 +90,7 @@ pub use geometry::readings::KnownScrew;
 pub use geometry::simulated::SimulatedBallBar;
 pub use identify::Excitation;
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
-pub use identify::axis_parameters::{
-    AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis,
-};
+pub use identify::axis_parameters::{AxisEstimate, NotIdentified, identify_axis};
 pub use identify::axis_statistics::axis_statistics;
 pub use identify::contour::{TrainedContour, Training, train_contour};
 pub use identify::grey_box::axis_facts::AxisFacts;

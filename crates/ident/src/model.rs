@@ -14,8 +14,8 @@ mod layout;
 use std::path::Path;
 
 use feedwright_control::{
-    AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry,
-    ModelBlock, Number, Trained, TrainedModel,
+    ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry, ModelBlock,
+    Number, Parameters, Trained, TrainedModel,
 };
 use feedwright_gcode::input;
 use feedwright_sim::toml_file::key::write;
@@ -94,7 +94,7 @@ pub(crate) struct Weights {
     /// Response time of the slowest speed loop, s; 0 where an earlier version wrote the model.
     pub(crate) response_s: f64,
     pub(crate) mechanics_s: f64,
-    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis; one that is optional and zero on all axes
+    /// Each of [`Parameters::NUMBERS`], axis by axis; one that is optional and zero on all axes
     /// is empty.
     pub(crate) axes: Vec<Vec<f64>>,
 }
@@ -124,9 +124,9 @@ impl Weights {
             let is_there = !number.optional || values.iter().any(|value| *value != 0.0);
             if is_there { values } else { Vec::new() }
         };
-        let axes = AxisKnowledge::NUMBERS.iter().map(of).collect();
+        let axes = Parameters::NUMBERS.iter().map(of).collect();
         Self {
-            mechanics_s: identified.mechanics_s,
+            mechanics_s: identified.periods.mechanics_s,
             axes,
             ..Self::default()
         }
@@ -134,7 +134,7 @@ impl Weights {
 
     /// Takes what a number is, axis by axis.
     fn set_of_axes(&mut self, index: usize, numbers: Vec<f64>) {
-        self.axes.resize(AxisKnowledge::NUMBERS.len(), Vec::new());
+        self.axes.resize(Parameters::NUMBERS.len(), Vec::new());
         self.axes[index] = numbers;
     }
 
@@ -387,13 +387,10 @@ impl Model {
         let Weights {
             mechanics_s, axes, ..
         } = &self.weights;
-        let mut identified = IdentifiedAxes::<N> {
-            mechanics_s: *mechanics_s,
-            ..IdentifiedAxes::NULL
-        };
-        let mut fits =
-            self.is(IdentifierKind::Axes, N) && axes.len() == AxisKnowledge::NUMBERS.len();
-        for (number, values) in AxisKnowledge::NUMBERS.iter().zip(axes) {
+        let mut identified = IdentifiedAxes::<N>::NULL;
+        identified.periods.mechanics_s = *mechanics_s;
+        let mut fits = self.is(IdentifierKind::Axes, N) && axes.len() == Parameters::NUMBERS.len();
+        for (number, values) in Parameters::NUMBERS.iter().zip(axes) {
             fits &= values.len() == N || (number.optional && values.is_empty());
             identified
                 .axes
@@ -402,7 +399,7 @@ impl Model {
                 .for_each(|(axis, value)| *(number.of)(axis) = *value);
         }
         identified
-            .with_periods(self.period.servo_s)
+            .at_servo_period(self.period.servo_s)
             .filter(|_| fits)
     }
 

@@ -7,9 +7,9 @@
 //! is biased by it. Both are measured here.
 
 use crate::sweep::part_or_whole;
-use feedwright_control::{AxisModel, AxisState, DriveModel, DriveState, Parameters};
-use feedwright_ident::{AxisParameters, DriveSettings, Excitation, Recording, identify_axis};
-use feedwright_sim::Machine;
+use feedwright_control::{AxisModel, AxisState, DriveModel, DriveState, Parameters, Part};
+use feedwright_ident::{Excitation, Recording, identify_axis};
+use feedwright_sim::{Known, Machine};
 use nalgebra::{SMatrix, SVector};
 
 const SEED: u64 = 1;
@@ -18,26 +18,14 @@ fn recorded(machine: &Machine) -> Recording<2> {
     Excitation::axis_parameters(machine).record(machine, SEED).0
 }
 
-fn settings(machine: &Machine, axis: usize) -> DriveSettings {
-    DriveSettings::of(machine.known().axis(axis), &machine.period)
-}
-
-fn of_file(machine: &Machine, axis: usize) -> AxisParameters {
-    let axis = machine.axes[axis];
-    AxisParameters {
-        inertia_kg_m2: axis.inertia_kg_m2,
-        viscous_friction_nm_s: axis.viscous_friction_nm_s,
-        coulomb_friction_nm: axis.coulomb_friction_nm,
-        coulomb_asymmetry_nm: axis.coulomb_asymmetry_nm,
-        presliding_rad: axis.friction().presliding_rad,
-        transmission: axis.transmission(),
-    }
+fn of_file(machine: &Machine, axis: usize) -> Parameters {
+    machine.axes[axis].parameters()
 }
 
 /// Returns the relative errors of inertia, viscous and Coulomb friction, and the error of the
 /// asymmetry as a part of the Coulomb friction.
-fn off(found: &AxisParameters, file: &AxisParameters) -> [f64; 4] {
-    let part = |value: fn(&AxisParameters) -> f64| value(found) / value(file) - 1.0;
+fn off(found: &Parameters, file: &Parameters) -> [f64; 4] {
+    let part = |value: fn(&Parameters) -> f64| value(found) / value(file) - 1.0;
     [
         part(|p| p.inertia_kg_m2),
         part(|p| p.viscous_friction_nm_s),
@@ -79,7 +67,7 @@ fn what_the_machine_file_says_comes_back() {
         let recording = recorded(&machine);
         for axis in axes() {
             let file = of_file(&machine, axis);
-            let found = identify_axis(&recording, axis, &settings(&machine, axis)).unwrap();
+            let found = identify_axis(&recording, axis, &machine.known()).unwrap();
             let off = off(&found.parameters, &file);
             assert!(
                 off.iter().zip(bounds).all(|(off, bound)| off.abs() < bound),
@@ -99,7 +87,7 @@ fn what_the_machine_file_says_comes_back() {
                 "{found:?}"
             );
             assert!(
-                name == "router" || !found.parameters.has_screw(),
+                name == "router" || !found.parameters.has(Part::Screw),
                 "{name} {axis}: {found:?}"
             );
         }
@@ -116,14 +104,14 @@ fn a_ball_screw_that_gives_is_found_from_the_motor_alone() {
     let recording = recorded(&machine);
     for axis in axes() {
         let file = of_file(&machine, axis);
-        let found = identify_axis(&recording, axis, &settings(&machine, axis))
+        let found = identify_axis(&recording, axis, &machine.known())
             .unwrap()
             .parameters;
-        let part = |value: fn(&AxisParameters) -> f64| value(&found) / value(&file) - 1.0;
+        let part = |value: fn(&Parameters) -> f64| value(&found) / value(&file) - 1.0;
         let off = [
-            part(|p| p.transmission.table_share),
-            part(|p| p.transmission.resonance_rad_s),
-            part(|p| p.transmission.backlash_rad),
+            part(|p| p.table_share),
+            part(|p| p.resonance_rad_s),
+            part(|p| p.backlash_rad),
         ];
         assert!(
             off.iter().zip(SCREW).all(|(off, most)| off.abs() < most),
@@ -151,8 +139,8 @@ fn encoder_noise_of_half_a_micrometre_biases_least_squares_on_the_torque_and_not
             .for_each(|axis| axis.encoder_noise_um = noise_um);
         let recording = recorded(&machine);
         for axis in axes() {
-            let (file, settings) = (of_file(&machine, axis), settings(&machine, axis));
-            let found = identify_axis(&recording, axis, &settings).unwrap();
+            let (file, known) = (of_file(&machine, axis), machine.known());
+            let found = identify_axis(&recording, axis, &known).unwrap();
             let [inertia, ..] = off(&found.parameters, &file);
             assert!(inertia.abs() < UNBIASED, "{noise_um}: {inertia}");
             // What is left is the noise, and what the disturbance of 25 Hz does.
@@ -161,7 +149,7 @@ fn encoder_noise_of_half_a_micrometre_biases_least_squares_on_the_torque_and_not
                 "{}",
                 found.left_um
             );
-            let [inertia, ..] = off(&equation_error(&recording, axis, &settings), &file);
+            let [inertia, ..] = off(&equation_error(&recording, axis, &known), &file);
             // Without noise it is right: the method is not made worse than it is.
             assert!(
                 if noise_um > 0.0 {
@@ -187,7 +175,7 @@ fn the_standard_error_is_about_the_spread_over_noise_seeds() {
     let found: Vec<[f64; 2]> = (0..seeds)
         .map(|seed| {
             let recording = recorded(&machine.with_noise_seed(100 + seed));
-            let found = identify_axis(&recording, 0, &settings(&machine, 0)).unwrap();
+            let found = identify_axis(&recording, 0, &machine.known()).unwrap();
             [
                 found.parameters.coulomb_friction_nm,
                 found.standard_errors.coulomb_friction_nm,
@@ -212,36 +200,22 @@ fn the_standard_error_is_about_the_spread_over_noise_seeds() {
 }
 
 /// Linear least squares on the torque that the model computes from measured positions.
-fn equation_error(
-    recording: &Recording<2>,
-    axis: usize,
-    settings: &DriveSettings,
-) -> AxisParameters {
-    let DriveSettings {
-        rad_per_mm,
-        kp_1_s,
-        kd,
-        kv_nm_s_per_rad,
-        torque_limit_nm,
-        periods,
-        ..
-    } = *settings;
+fn equation_error(recording: &Recording<2>, axis: usize, known: &Known) -> Parameters {
+    let (nominal, periods) = (&known.axis(axis).nominal, known.period.periods());
+    let rad_per_mm = nominal.rad_per_mm;
     // The inertia is in the drive's feedforward alone, where it cancels.
     let parameters = Parameters {
-        rad_per_mm,
-        kp_1_s,
-        kd,
-        kv_nm_s_per_rad,
-        torque_limit_nm,
         inertia_kg_m2: 1.0,
         viscous_friction_nm_s: 0.0,
         coulomb_friction_nm: 0.0,
         coulomb_smoothing_rad_s: 1.0,
+        acceleration_feedforward: nominal.acceleration_feedforward * nominal.inertia_kg_m2,
+        ..*nominal
     };
     let axis_model = AxisModel::new(parameters, periods);
-    let drive = DriveModel::new(&axis_model, settings.drive_of(1.0));
+    let drive = DriveModel::new(&axis_model);
     let per_servo = periods.mechanics_per_servo;
-    let late = (settings.delays.drive_s / periods.servo_s).round() as usize;
+    let late = (nominal.drive_delay_s / periods.servo_s).round() as usize;
     let (mut matrix, mut right) = (SMatrix::<f64, 4, 4>::zeros(), SVector::<f64, 4>::zeros());
     for knots in &recording.stretches {
         let at = |k: usize| knots[k].tool_mm[axis] * rad_per_mm;
@@ -276,13 +250,12 @@ fn equation_error(
         }
     }
     let found = matrix.cholesky().unwrap().solve(&right);
-    AxisParameters {
+    Parameters {
         inertia_kg_m2: found[0],
         viscous_friction_nm_s: found[1],
         coulomb_friction_nm: found[2],
         coulomb_asymmetry_nm: found[3],
-        presliding_rad: 0.0,
-        ..AxisParameters::default()
+        ..Parameters::NOTHING
     }
 }
 
@@ -294,12 +267,7 @@ fn a_search_that_comes_by_no_friction_goes_on() {
         Machine::parse("stiff.toml", include_str!("common/stiff_by_its_log.toml")).unwrap();
     let known = machine.known();
     let (recording, _) = Excitation::axis_parameters(&machine).record::<3>(&machine, 1);
-    let found = identify_axis(
-        &recording,
-        0,
-        &DriveSettings::of(known.axis(0), &known.period),
-    )
-    .unwrap();
+    let found = identify_axis(&recording, 0, &known).unwrap();
     assert!(
         (found.parameters.inertia_kg_m2 / machine.axes[0].inertia_kg_m2 - 1.0).abs() < 0.01,
         "{found:?}"

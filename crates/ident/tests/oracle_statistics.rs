@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use crate::sweep::part_or_whole;
-use feedwright_control::AxisStatistics;
+use feedwright_control::Parameters;
 use feedwright_ident::{Excitation, axis_statistics};
 use feedwright_sim::Machine;
 
@@ -24,7 +24,7 @@ fn machine(name: &str) -> Machine {
     .unwrap()
 }
 
-fn true_and_found(name: &str, seed: u64) -> [[AxisStatistics; 2]; 2] {
+fn true_and_found(name: &str, seed: u64) -> [[Parameters; 2]; 2] {
     let mut machine = machine(name);
     machine.noise.seed = seed;
     let recording = Excitation::statistics(&machine).record_in_one::<2>(&machine, seed);
@@ -35,7 +35,7 @@ fn true_and_found(name: &str, seed: u64) -> [[AxisStatistics; 2]; 2] {
         recording.stretches[0].len(),
         start.elapsed().as_secs_f64()
     );
-    let truth = machine.statistics::<2>();
+    let truth = [0, 1].map(|i| machine.axis(i).parameters());
     for i in 0..2 {
         let um = 1e3 / machine.axis(i).rad_per_mm();
         [("is ", &truth[i]), ("est", &found[i])]
@@ -46,7 +46,7 @@ fn true_and_found(name: &str, seed: u64) -> [[AxisStatistics; 2]; 2] {
 }
 
 /// A row of the table: um, N m, ms, Hz.
-fn row(s: &AxisStatistics, um: f64) -> String {
+fn row(s: &Parameters, um: f64) -> String {
     let signal_um = if s.signal_per_rad > 0.0 {
         TAU / s.signal_per_rad * um
     } else {
@@ -71,8 +71,8 @@ fn row(s: &AxisStatistics, um: f64) -> String {
 
 /// Lists the misses, in words. A term that is present must be found within these factors, an absent
 /// one must be zero.
-fn missed(truth: &AxisStatistics, found: &AxisStatistics) -> Vec<String> {
-    let of = |s: &AxisStatistics| {
+fn missed(truth: &Parameters, found: &Parameters) -> Vec<String> {
+    let of = |s: &Parameters| {
         [
             ("noise", s.encoder_noise_rad, 1.15),
             ("step", s.encoder_step_rad, 1.000_001),
@@ -106,7 +106,7 @@ fn missed(truth: &AxisStatistics, found: &AxisStatistics) -> Vec<String> {
     // An interpolation error shifts the place at which it is looked up: what that leaves counts as
     // noise.
     let lookup_rad = 0.1 * truth.interpolation_rad;
-    let found = &AxisStatistics {
+    let found = &Parameters {
         encoder_noise_rad: if found.encoder_noise_rad < lookup_rad {
             0.0
         } else {

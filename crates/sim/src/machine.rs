@@ -12,7 +12,6 @@ pub mod keys;
 mod known;
 mod layout;
 mod plan_limits;
-mod statistics;
 
 use std::ffi::OsStr;
 use std::path::Path;

@@ -21,7 +21,7 @@ mod tick_times;
 pub(crate) mod uncut;
 
 use feedwright_control::{
-    Bounds, Controller, Fade, Knot, KnownGeometry, Setpoint, State, Tick, TransmissionParameters,
+    Bounds, Controller, Fade, Knot, KnownGeometry, Part, Setpoint, State, Tick,
 };
 use feedwright_plan::vector::{Vector, distance, sub};
 
@@ -598,7 +598,7 @@ fn uncrossed_mm<const N: usize>(
     let axes = controller.known();
     let crosses = |i: usize| {
         axes.as_ref()
-            .is_some_and(|axes| axes[i].transmission != TransmissionParameters::RIGID)
+            .is_some_and(|axes| axes[i].parameters.has(Part::Screw))
     };
     let lost_mm = known.backlash_mm();
     std::array::from_fn(|i| if crosses(i) { 0.0 } else { lost_mm[i] })

@@ -4,9 +4,8 @@
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisErrors, AxisKnowledge, ContourIdentifier, DriveParameters, ErrorTable, FEED_PERIODS_S,
-    IdentifiedAxes, Identifier, KnownGeometry, LoopDelays, MAX_WEIGHT, ModelBlock, Parameters,
-    Periods, RESPONSES_S, Trained, TrainedModel,
+    AxisErrors, ContourIdentifier, ErrorTable, FEED_PERIODS_S, IdentifiedAxes, Identifier,
+    KnownGeometry, MAX_WEIGHT, ModelBlock, Parameters, Periods, RESPONSES_S, Trained, TrainedModel,
 };
 
 use crate::draw::Draw;
@@ -41,31 +40,19 @@ pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
         viscous_friction_nm_s: 0.0336,
         coulomb_friction_nm: 0.2,
         coulomb_smoothing_rad_s: 0.05,
+        speed_integral_s: 0.02,
+        drive_delay_s: 0.001,
+        measurement_delay_s: 0.0005,
+        ..Parameters::NOTHING
     };
     let periods = Periods {
         servo_s: SERVO_S,
         mechanics_s: 0.0001,
         mechanics_per_servo: 10,
     };
-    let delays = LoopDelays {
-        command_s: 0.0,
-        drive_s: 0.001,
-        measurement_s: 0.0005,
-    };
-    let drive = DriveParameters {
-        speed_integral_s: 0.02,
-        ..AxisKnowledge::NOTHING.drive
-    };
-    let axis = AxisKnowledge {
-        parameters,
-        periods,
-        delays,
-        drive,
-        ..AxisKnowledge::NOTHING
-    };
     IdentifiedAxes {
-        mechanics_s: periods.mechanics_s,
-        axes: [axis; N],
+        periods,
+        axes: [parameters; N],
     }
 }
 
@@ -73,10 +60,10 @@ pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
 pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     let mut axes = known_axes::<N>();
     let [servo_s, mechanics_s] = draw.pick(PERIODS_S);
-    axes.mechanics_s = mechanics_s;
+    axes.periods.mechanics_s = mechanics_s;
     for axis in &mut axes.axes {
         for _ in 0..draw.below(12) {
-            let number = draw.pick(AxisKnowledge::NUMBERS);
+            let number = draw.pick(Parameters::NUMBERS);
             let [least, most] = number.range;
             *(number.of)(axis) = match draw.below(6) {
                 0 => least,

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use feedwright::{CONTROLLERS, Choices, Make, Setup, TWO_DIMENSIONAL};
 use feedwright_control::{
     AnyController, Bounds, Command, Controller, ControllerRow, IdentifiedAxes, IdentifierKind,
-    Knot, KnotSource, Knows, Measured, Schedule, SelfReport, Tick, Window,
+    Knot, KnotSource, Knows, Measured, Part, Schedule, SelfReport, Tick, Window,
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes};
 use feedwright_servo::machine::{live_controller, model_of};
@@ -96,11 +96,13 @@ impl Controller<2> for Both {
 
 /// Exact model of the axes.
 fn axes_model(machine: &Machine) -> Model {
-    let (known, statistics) = (machine.known(), machine.statistics::<2>());
-    let periods = known.period.periods();
+    let known = machine.known();
     let axes = IdentifiedAxes::<2> {
-        mechanics_s: periods.mechanics_s,
-        axes: std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i])),
+        periods: known.period.periods(),
+        axes: [0, 1].map(|i| {
+            let all = machine.axis(i).parameters();
+            known.axis(i).nominal.taking(&[Part::Noise], &all)
+        }),
     };
     let trained = TrainedAxes {
         axes,
@@ -109,8 +111,8 @@ fn axes_model(machine: &Machine) -> Model {
         samples: 1,
     };
     let recording = Recording {
-        servo_s: periods.servo_s,
-        feed_period_s: periods.servo_s,
+        servo_s: axes.periods.servo_s,
+        feed_period_s: axes.periods.servo_s,
         stretches: vec![],
     };
     let origin = Origin {

@@ -28,7 +28,7 @@
 //!
 //! Symbols: as in [`feedwright_control::axis::drive`]. Polynomials are in ascending powers of z^-1.
 use feedwright_control::{
-    AxisModel, AxisState, DriveModel, DriveParameters, DriveReference, DriveState, Parameters,
+    AxisModel, AxisState, DriveModel, DriveReference, DriveState, Parameters,
 };
 use feedwright_sim::{KnownAxis, Period};
 use nalgebra::{ComplexField, DMatrix, SMatrix, Schur};
@@ -66,7 +66,7 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
         size <= SOON_GONE || (size < 1.0 && zero.re > 0.0)
     });
     // B-(z) has the coefficients of B-(1/z) in reverse order, one period ahead for each zero.
-    let ahead = axis.delays.command_periods(period.servo_s) + late + mirrored.len();
+    let ahead = axis.nominal.command_periods(period.servo_s) + late + mirrored.len();
     let mut mirror = with_zeros(&mirrored);
     mirror.reverse();
     let of_reference = times(&denominator, &mirror);
@@ -81,7 +81,7 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
 struct ClosedAxis {
     axis_model: AxisModel,
     drive: DriveModel,
-    parameters: DriveParameters,
+    parameters: Parameters,
     /// Delays of the drive and of the measurement, mechanics periods.
     late: [u32; 2],
     /// Torque of the drive's acceleration feedforward for a change of the commanded speed, N m
@@ -93,22 +93,20 @@ impl ClosedAxis {
     fn new(axis: &KnownAxis, nominal: &Parameters, period: &Period) -> Self {
         let linear = Parameters {
             torque_limit_nm: f64::INFINITY,
+            speed_limit_rad_s: 0.0,
             coulomb_friction_nm: 0.0,
             ..*nominal
         };
         let axis_model = AxisModel::new(linear, period.periods());
-        let parameters = DriveParameters {
-            speed_limit_rad_s: 0.0,
-            ..axis.drive
-        };
+        let parameters = axis_model.parameters;
         let longest = MAX_DELAY_PERIODS / 2 * period.mechanics_per_servo;
         // A float that is not a number saturates to zero here.
         let late = |delay_s: f64| ((delay_s / period.mechanics_s).round() as u32).min(longest);
         Self {
             axis_model,
-            drive: DriveModel::new(&axis_model, parameters),
+            drive: DriveModel::new(&axis_model),
             parameters,
-            late: [axis.delays.drive_s, axis.delays.measurement_s].map(late),
+            late: [parameters.drive_delay_s, parameters.measurement_delay_s].map(late),
             // What the drive is set to, whatever the inertia is taken for.
             torque_for_change: parameters.acceleration_feedforward * axis.nominal.inertia_kg_m2
                 / period.servo_s,
@@ -377,17 +375,18 @@ mod tests {
                     .enumerate()
                     .map(|(j, b)| b * back(&commands_rad, k, j))
                     .sum();
-                let DriveParameters {
+                let Parameters {
                     acceleration_feedforward: fed,
                     speed_integral_s: integral_s,
+                    measurement_delay_s,
                     ..
-                } = axis.drive;
-                let is_exact = fed * integral_s * axis.delays.measurement_s == 0.0;
+                } = axis.nominal;
+                let is_exact = fed * integral_s * measurement_delay_s == 0.0;
                 let tolerance = if is_exact { TOLERANCE } else { SEEN_LATE };
                 assert!(
                     (left - right).abs() < tolerance,
                     "{:?}, {k}: {left} {right}",
-                    axis.drive
+                    axis.nominal
                 );
             }
             assert!(

@@ -55,6 +55,7 @@ pub(super) fn axis(kd: f64, coulomb_friction_nm: f64) -> Parameters {
         viscous_friction_nm_s: 0.03,
         coulomb_friction_nm,
         coulomb_smoothing_rad_s: 0.05,
+        ..Parameters::NOTHING
     }
 }
 
@@ -79,5 +80,5 @@ pub(super) fn inverse(axis: Parameters) -> AxisInverse {
         mechanics_s: 1e-3 * SERVO_S,
         mechanics_per_servo: 1000,
     };
-    AxisInverse::plain(AxisModel::new(axis, periods))
+    AxisInverse::new(AxisModel::new(axis, periods))
 }

@@ -3,9 +3,8 @@
 
 use feedwright::Setup;
 use feedwright_control::{
-    ACCELERATION_GAIN, AxisInverse, AxisModel, AxisState, Controller, DriveParameters,
-    FRICTION_GAIN, Feedforward, Gains, LoopDelays, LqgIdentified, LqgSettings, Parameter,
-    Parameters, VELOCITY_GAIN, Values,
+    ACCELERATION_GAIN, AxisInverse, AxisModel, AxisState, Controller, FRICTION_GAIN, Feedforward,
+    Gains, LqgIdentified, LqgSettings, Parameter, Parameters, Part, VELOCITY_GAIN, Values,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
 
@@ -143,13 +142,13 @@ pub(super) fn constrained_feedrate<const N: usize>(
         slowest: values(&cross_coupled_feedrate::SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
-    let axes = setup.known.axes().map(|KnownAxis { nominal, drive, .. }| {
+    let axes = setup.known.axes().map(|KnownAxis { nominal, .. }| {
         let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
         LaggingAxis {
             kp_1_s: nominal.kp_1_s,
             bandwidth_1_s: damping_nm_s / nominal.inertia_kg_m2,
             reached: nominal.kv_nm_s_per_rad / damping_nm_s,
-            fed_forward: drive.velocity_feedforward,
+            fed_forward: nominal.velocity_feedforward,
         }
     });
     Box::new(ConstrainedFeedrate::<N>::new(
@@ -181,10 +180,14 @@ pub(super) fn feedforward_as_delivered<const N: usize>(
     values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let [velocity, acceleration] = [VELOCITY_GAIN, ACCELERATION_GAIN].map(|gain| values(&gain));
-    let axes = setup.known.axis_model().map(AxisInverse::plain);
-    let gains = setup.known.axes::<N>().map(|KnownAxis { drive, .. }| {
+    let axes = setup.known.axis_model().map(|axis_model| {
+        AxisInverse::new(axis_model.with(|axis| {
+            *axis = axis.without(&[Part::Drive, Part::Delays, Part::Friction]);
+        }))
+    });
+    let gains = setup.known.axes::<N>().map(|KnownAxis { nominal, .. }| {
         let feeds_forward =
-            drive.velocity_feedforward > 0.0 || drive.acceleration_feedforward > 0.0;
+            nominal.velocity_feedforward > 0.0 || nominal.acceleration_feedforward > 0.0;
         if feeds_forward {
             Gains::NONE
         } else {
@@ -260,16 +263,15 @@ fn inverse<const N: usize>(setup: &Setup<'_>, values: Values<'_>) -> ZeroPhase<N
     let plain: [SampledAxis; N] = sampled_axes(known, [lag_scale, inertia_scale]);
     let filters = std::array::from_fn(|i| {
         let axis = known.axis(i);
-        let filter =
-            if axis.drive == DriveParameters::default() && axis.delays == LoopDelays::default() {
-                None
-            } else {
-                closed_loop::inverting(
-                    axis,
-                    &scaled(&axis.nominal, [lag_scale, inertia_scale]),
-                    &known.period,
-                )
-            };
+        let filter = if !axis.nominal.has(Part::Drive) && !axis.nominal.has(Part::Delays) {
+            None
+        } else {
+            closed_loop::inverting(
+                axis,
+                &scaled(&axis.nominal, [lag_scale, inertia_scale]),
+                &known.period,
+            )
+        };
         filter.unwrap_or_else(|| Filter::new(&plain[i], servo_s))
     });
     ZeroPhase::new(
@@ -351,21 +353,16 @@ fn observed_axes<const N: usize>(
 ) -> [ObservedAxis; N] {
     let axes: [SampledAxis; N] = sampled_axes(known, [1.0; 2]);
     std::array::from_fn(|i| {
-        let KnownAxis {
-            nominal,
-            drive,
-            delays,
-            ..
-        } = *known.axis(i);
+        let nominal = known.axis(i).nominal;
         let limit_mm_s = nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm);
-        let fed_nm_s2 = drive.acceleration_feedforward * nominal.inertia_kg_m2;
+        let fed_nm_s2 = nominal.acceleration_feedforward * nominal.inertia_kg_m2;
         let drive = ObservedDrive {
-            velocity_feedforward: drive.velocity_feedforward,
+            velocity_feedforward: nominal.velocity_feedforward,
             torque_1_s: fed_nm_s2
                 / (nominal.kv_nm_s_per_rad * known.period.servo_s * known.period.servo_s),
-            speed_integral_s: drive.speed_integral_s,
-            delay_s: delays.drive_s + delays.measurement_s,
-            command_periods: delays.command_periods(known.period.servo_s),
+            speed_integral_s: nominal.speed_integral_s,
+            delay_s: nominal.drive_delay_s + nominal.measurement_delay_s,
+            command_periods: nominal.command_periods(known.period.servo_s),
         };
         ObservedAxis {
             axis: axes[i],

@@ -18,11 +18,10 @@ pub(crate) mod horizon;
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
-    AxisModel, AxisState, Command, CommandQueue, Controller, DriveModel, DriveParameters,
-    DriveReference, DriveState, FrictionModel, FrictionParameters, Measured, Parameter, Parameters,
-    Schedule, SelfReport, Window, friction_signs,
+    AxisModel, AxisState, Command, CommandQueue, Controller, DriveModel, DriveReference,
+    DriveState, FrictionModel, Measured, Parameter, Schedule, SelfReport, Window, friction_signs,
 };
-use feedwright_sim::{Known, KnownAxis};
+use feedwright_sim::Known;
 
 use horizon::{CommandedPeriod, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Sensitivity};
 use residual::{DisturbanceForecast, Residual, ResidualSettings};
@@ -195,12 +194,11 @@ struct Exact<const N: usize> {
 impl<const N: usize> Exact<N> {
     fn new(known: &Known, servo_periods: u32) -> Self {
         let axis_models: [AxisModel; N] = known.axis_model();
-        let axes: [ExactAxis; N] =
-            std::array::from_fn(|i| ExactAxis::new(axis_models[i], known.axis(i)));
+        let axes: [ExactAxis; N] = std::array::from_fn(|i| ExactAxis::new(axis_models[i]));
         let response_s: [f64; N] = axis_models.map(|axis_model| 1.0 / axis_model.parameters.kp_1_s);
         // What the drive feeds forward of the speed does not wait for an error.
         let lag_s =
-            |i: usize| (1.0 - known.axis(i).drive.velocity_feedforward).max(0.0) * response_s[i];
+            |i: usize| (1.0 - known.axis(i).nominal.velocity_feedforward).max(0.0) * response_s[i];
         let lag_s = (0..N).map(lag_s).sum::<f64>() / N as f64;
         Self {
             axes,
@@ -307,31 +305,20 @@ struct ExactAxis {
 }
 
 impl ExactAxis {
-    fn new(axis_model: AxisModel, known: &KnownAxis) -> Self {
-        let unlimited = Parameters {
-            torque_limit_nm: f64::INFINITY,
-            ..axis_model.parameters
-        };
-        let linear = AxisModel::new(unlimited, axis_model.periods);
-        let time_s = known.drive.speed_integral_s;
+    fn new(axis_model: AxisModel) -> Self {
+        let parameters = axis_model.parameters;
+        let linear = axis_model.with(|axis| {
+            (axis.torque_limit_nm, axis.speed_limit_rad_s) = (f64::INFINITY, 0.0);
+        });
+        let time_s = parameters.speed_integral_s;
         let longest = (KEPT_PERIODS as u32 - 2) * axis_model.periods.mechanics_per_servo;
-        let late =
-            (known.delays.drive_s + known.delays.measurement_s) / axis_model.periods.mechanics_s;
-        let at_rest = Moving::at_rest(known.delays.command_periods(axis_model.periods.servo_s));
+        let late = (parameters.drive_delay_s + parameters.measurement_delay_s)
+            / axis_model.periods.mechanics_s;
+        let at_rest = Moving::at_rest(parameters.command_periods(axis_model.periods.servo_s));
         Self {
-            drive: DriveModel::new(&axis_model, known.drive),
-            friction: (known.friction != FrictionParameters::default())
-                .then(|| FrictionModel::new(&axis_model, known.friction)),
-            linear: (
-                linear,
-                DriveModel::new(
-                    &linear,
-                    DriveParameters {
-                        speed_limit_rad_s: 0.0,
-                        ..known.drive
-                    },
-                ),
-            ),
+            drive: DriveModel::new(&axis_model),
+            friction: FrictionModel::if_present(&axis_model),
+            linear: (linear, DriveModel::new(&linear)),
             integral_nm_rad: if time_s > 0.0 {
                 axis_model.parameters.kv_nm_s_per_rad / time_s
             } else {

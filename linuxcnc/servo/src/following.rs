@@ -39,10 +39,7 @@ pub fn least_min_ferror_mm<const N: usize>(
     joints: [JointLimits; N],
     delay_s: f64,
 ) -> [f64; N] {
-    let servo_s = machine
-        .axes
-        .first()
-        .map_or(0.001, |axis| axis.periods.servo_s);
+    let servo_s = machine.periods.servo_s;
     let ramps_s = joints.map(|joint| ramp_s(&joint));
     let most_s = 2.0 * (ramps_s.into_iter().fold(0.0, f64::max) + STEADY_S);
     let delay = libm::round(delay_s / servo_s);

@@ -16,9 +16,8 @@
 use core::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, AxisModel, AxisState, AxisStatistics, CommandQueue, DriveModel, DriveReference,
-    DriveState, FrictionModel, FrictionParameters, IdentifiedAxes, KnownGeometry, friction_signs,
-    sin,
+    AxisModel, AxisState, CommandQueue, DriveModel, DriveReference, DriveState, FrictionModel,
+    IdentifiedAxes, KnownGeometry, Part, friction_signs, sin,
 };
 
 /// References and positions that are kept, servo periods: 20 ms each way at 1 ms, and some.
@@ -36,7 +35,7 @@ pub struct SimulatedMachine<const N: usize> {
 impl<const N: usize> SimulatedMachine<N> {
     /// Starts at rest at zero, with random numbers from `seed`.
     pub fn new(machine: &IdentifiedAxes<N>, seed: u64) -> Self {
-        let mut axes = machine.axes.map(SimulatedAxis::new);
+        let mut axes = machine.axis_models().map(SimulatedAxis::new);
         for (i, axis) in axes.iter_mut().enumerate() {
             axis.noise.state ^= splitmix(seed.wrapping_add(i as u64));
         }
@@ -49,14 +48,11 @@ impl<const N: usize> SimulatedMachine<N> {
 
     /// The same axes, without noise and disturbance.
     pub fn without_noise(machine: &IdentifiedAxes<N>) -> Self {
-        let quiet = |axis| {
-            SimulatedAxis::new(AxisKnowledge {
-                statistics: AxisStatistics::NOTHING,
-                ..axis
-            })
+        let quiet = |axis_model: AxisModel| {
+            SimulatedAxis::new(axis_model.with(|axis| *axis = axis.without(&[Part::Noise])))
         };
         Self {
-            axes: machine.axes.map(quiet),
+            axes: machine.axis_models().map(quiet),
             geometry: None,
             period: 0,
         }
@@ -119,8 +115,9 @@ impl<const N: usize> SimulatedMachine<N> {
 
 #[derive(Debug, Clone)]
 struct SimulatedAxis {
-    known: AxisKnowledge,
     axis_model: AxisModel,
+    /// Inertia that the file says, kg m2.
+    inertia_kg_m2: f64,
     drive: DriveModel,
     friction: Option<FrictionModel>,
     inertia: f64,
@@ -143,19 +140,18 @@ struct SimulatedAxis {
 }
 
 impl SimulatedAxis {
-    fn new(known: AxisKnowledge) -> Self {
-        let axis_model = known.axis_model();
-        let statistics = known.statistics;
-        let kept = if statistics.torque_noise_s > 0.0 {
-            libm::exp(-known.periods.mechanics_s / statistics.torque_noise_s)
+    fn new(axis_model: AxisModel) -> Self {
+        let (parameters, periods) = (axis_model.parameters, axis_model.periods);
+        let kept = if parameters.torque_noise_s > 0.0 {
+            libm::exp(-periods.mechanics_s / parameters.torque_noise_s)
         } else {
             0.0
         };
         Self {
-            known,
             axis_model,
-            drive: DriveModel::new(&axis_model, known.drive),
-            friction: friction_of(&known, &axis_model),
+            inertia_kg_m2: parameters.inertia_kg_m2,
+            drive: DriveModel::new(&axis_model),
+            friction: FrictionModel::if_present(&axis_model),
             inertia: 1.0,
             state: AxisState::default(),
             drive_state: DriveState::AT_REST,
@@ -163,10 +159,7 @@ impl SimulatedAxis {
             torque_nm: 0.0,
             broadband_nm: 0.0,
             kept,
-            commands: CommandQueue::resting(
-                known.delays.command_periods(known.periods.servo_s),
-                0.0,
-            ),
+            commands: CommandQueue::resting(parameters.command_periods(periods.servo_s), 0.0),
             sent: [DriveReference::default(); KEPT],
             shown_rad: [0.0; KEPT],
             arrived_rad: 0.0,
@@ -196,16 +189,17 @@ impl SimulatedAxis {
         let possible = inertia > 0.0 && inertia.is_finite();
         if possible && inertia.to_bits() != self.inertia.to_bits() {
             self.inertia = inertia;
-            let mut parameters = self.known.parameters;
-            parameters.inertia_kg_m2 *= inertia;
-            self.axis_model = AxisModel::new(parameters, self.known.periods);
-            self.friction = friction_of(&self.known, &self.axis_model);
+            let inertia_kg_m2 = self.inertia_kg_m2 * inertia;
+            self.axis_model = self
+                .axis_model
+                .with(|axis| axis.inertia_kg_m2 = inertia_kg_m2);
+            self.friction = FrictionModel::if_present(&self.axis_model);
         }
     }
 
     fn turn(&mut self, command_mm: f64, inertia: f64, period: u64) {
         self.load(inertia);
-        let periods = self.known.periods;
+        let (parameters, periods) = (self.axis_model.parameters, self.axis_model.periods);
         let command_rad = self
             .commands
             .pass(command_mm * self.axis_model.parameters.rad_per_mm);
@@ -220,8 +214,8 @@ impl SimulatedAxis {
         self.sent[0] = reference;
         let late = |delay_s: f64| libm::round(delay_s / periods.mechanics_s) as u32;
         let (drive_late, shown_late) = (
-            late(self.known.delays.drive_s),
-            late(self.known.delays.measurement_s),
+            late(parameters.drive_delay_s),
+            late(parameters.measurement_delay_s),
         );
         let per_servo = periods.mechanics_per_servo.max(1);
         // An angle is taken where it is a delay before the start of a servo period.
@@ -255,7 +249,7 @@ impl SimulatedAxis {
 
     /// The encoder is read.
     fn show(&mut self) {
-        let statistics = self.known.statistics;
+        let statistics = &self.axis_model.parameters;
         let angle_rad = self.state.angle_rad;
         let interpolation_rad = statistics.interpolation_rad
             * sin(statistics.signal_per_rad * angle_rad + statistics.interpolation_phase_rad);
@@ -273,7 +267,8 @@ impl SimulatedAxis {
 
     /// One mechanics period.
     fn mechanics(&mut self, reference: DriveReference, t_s: f64) {
-        let (statistics, axis_model) = (self.known.statistics, &self.axis_model);
+        let axis_model = &self.axis_model;
+        let statistics = &axis_model.parameters;
         let turns = statistics.disturbance_rad_s * t_s / TAU;
         let disturbance_nm = statistics.disturbance_nm * sin(TAU * (turns - libm::floor(turns)));
         let step_nm = statistics.torque_noise_nm * libm::sqrt(1.0 - self.kept * self.kept);
@@ -302,11 +297,6 @@ impl SimulatedAxis {
             }
         }
     }
-}
-
-fn friction_of(known: &AxisKnowledge, axis_model: &AxisModel) -> Option<FrictionModel> {
-    (known.friction != FrictionParameters::default())
-        .then(|| FrictionModel::new(axis_model, known.friction))
 }
 
 /// Random numbers of an axis.

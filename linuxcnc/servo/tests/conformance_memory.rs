@@ -64,7 +64,7 @@ struct Outputs {
 /// A model of axes.
 fn block<const N: usize>() -> Vec<u8> {
     let axes = IdentifiedAxes {
-        mechanics_s: 1e-4,
+        periods: axis::PERIODS,
         axes: [axis::axis(); N],
     };
     written(Trained::<N>::Axes(axes))

@@ -14,7 +14,7 @@ use feedwright_servo::limits::LinkLimits;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkInputs, Servo};
 
-use axis::axis;
+use axis::{PERIODS, axis};
 use common::{LIMITS, SERVO_S, cutting};
 use paths::{REST, circle, commands, error_mm, square, star, stopping};
 
@@ -29,9 +29,9 @@ type Machine = IdentifiedAxes<2>;
 /// Returns two equal axes whose gain is `gain` times the gain of the model.
 fn machine(gain: f64) -> Machine {
     let mut axis = axis();
-    axis.parameters.kp_1_s *= gain;
+    axis.kp_1_s *= gain;
     IdentifiedAxes {
-        mechanics_s: axis.periods.mechanics_s,
+        periods: PERIODS,
         axes: [axis; 2],
     }
 }

@@ -12,10 +12,7 @@ mod paths;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{
-    AxisKnowledge, AxisStatistics, DriveParameters, FrictionParameters, IdentifiedAxes, LoopDelays,
-    State, TrainedModel,
-};
+use feedwright_control::{IdentifiedAxes, Parameters, Part, State, TrainedModel};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 
@@ -41,24 +38,17 @@ fn tnv40() -> IdentifiedAxes<2> {
     let inertia_and_friction = [[0.0103, 0.0336, 0.2], [0.012, 0.0308, 0.3]];
     let axes = inertia_and_friction.map(
         |[inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm]| {
-            let mut axis = AxisKnowledge {
-                delays: LoopDelays {
-                    command_s: 0.0,
-                    drive_s: 0.0,
-                    measurement_s: 0.0,
-                },
-                ..axis()
-            };
-            axis.parameters.inertia_kg_m2 = inertia_kg_m2;
-            axis.parameters.viscous_friction_nm_s = viscous_friction_nm_s;
-            axis.parameters.coulomb_friction_nm = coulomb_friction_nm;
-            axis.statistics.disturbance_nm = 0.1;
-            axis.statistics.disturbance_rad_s = 25.0 * TAU;
+            let mut axis = axis().without(&[Part::Delays]);
+            axis.inertia_kg_m2 = inertia_kg_m2;
+            axis.viscous_friction_nm_s = viscous_friction_nm_s;
+            axis.coulomb_friction_nm = coulomb_friction_nm;
+            axis.disturbance_nm = 0.1;
+            axis.disturbance_rad_s = 25.0 * TAU;
             axis
         },
     );
     IdentifiedAxes {
-        mechanics_s: axes[0].periods.mechanics_s,
+        periods: axis::PERIODS,
         axes,
     }
 }
@@ -70,19 +60,15 @@ fn workshop() -> IdentifiedAxes<2> {
     for (axis, (speed_integral_s, coulomb_asymmetry_nm, stribeck_nm)) in
         machine.axes.iter_mut().zip(of_axis)
     {
-        let drive = DriveParameters {
+        *axis = Parameters {
             speed_integral_s,
             velocity_feedforward: 0.95,
             torque_filter_hz: 1000.0,
-            ..axis.drive
-        };
-        let friction = FrictionParameters {
+            drive_delay_s: 0.001,
             coulomb_asymmetry_nm,
             stribeck_nm,
             stribeck_rad_s: 2.0 * RAD_PER_MM,
             presliding_rad: 0.01 * RAD_PER_MM,
-        };
-        let statistics = AxisStatistics {
             encoder_noise_rad: 5e-5 * RAD_PER_MM,
             encoder_step_rad: 1e-4 * RAD_PER_MM,
             interpolation_rad: 2e-4 * RAD_PER_MM,
@@ -92,15 +78,8 @@ fn workshop() -> IdentifiedAxes<2> {
             disturbance_wander: 0.02,
             cogging_nm: 0.05,
             cogging_per_rev: 24.0,
-            ..axis.statistics
-        };
-        *axis = AxisKnowledge {
-            drive,
-            friction,
-            statistics,
             ..*axis
         };
-        axis.delays.drive_s = 0.001;
     }
     machine
 }

@@ -61,7 +61,7 @@ fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_told() {
         let mut real = machine();
         real.axes
             .iter_mut()
-            .for_each(|axis| axis.delays.drive_s += late_s);
+            .for_each(|axis| axis.drive_delay_s += late_s);
         let without = rms_mm(&turn_on(
             &real,
             Ok(machine()),
@@ -227,7 +227,7 @@ fn the_simulated_axis_lags_as_its_loops_say() {
     for n in 0..1000_u32 {
         plant.step([v * SERVO_S * f64::from(n), 0.0], true, 1.0);
     }
-    let axis = machine().axes[0].parameters;
+    let axis = machine().axes[0];
     let friction_mm_s = axis.coulomb_friction_nm / axis.kv_nm_s_per_rad / axis.rad_per_mm;
     let error_mm = (v * (1.0 + axis.viscous_friction_nm_s / axis.kv_nm_s_per_rad) + friction_mm_s)
         / axis.kp_1_s;
@@ -245,7 +245,7 @@ fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_ag
     machine
         .axes
         .iter_mut()
-        .for_each(|axis| axis.drive.speed_integral_s = 0.02);
+        .for_each(|axis| axis.speed_integral_s = 0.02);
     for from in [700, 900, 1100] {
         let lost = from..from + 4;
         let periods = turn_on(

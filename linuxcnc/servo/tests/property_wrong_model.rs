@@ -10,11 +10,11 @@ mod common;
 #[expect(dead_code, reason = "other tests need the rest")]
 mod paths;
 
-use feedwright_control::{AxisKnowledge, IdentifiedAxes, TrainedModel};
+use feedwright_control::{IdentifiedAxes, Parameters, TrainedModel};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkFault, LinkInputs, Servo};
 
-use axis::axis;
+use axis::{PERIODS, axis};
 use common::{LIMITS, SERVO_S, cutting};
 use paths::{REST, circle, commands, eight, error_mm, star};
 
@@ -28,13 +28,13 @@ const SPENT_NM: f64 = 27.0;
 const SPENT: f64 = 1.2;
 
 type Machine = IdentifiedAxes<2>;
-type Change = fn(&mut AxisKnowledge);
+type Change = fn(&mut Parameters);
 
 /// Returns two equal axes with the numbers of the machine of Lee, Cho and Jeon (2005).
 fn machine() -> Machine {
     let axis = axis();
     IdentifiedAxes {
-        mechanics_s: axis.periods.mechanics_s,
+        periods: PERIODS,
         axes: [axis; 2],
     }
 }
@@ -114,36 +114,24 @@ fn by_the_right_model_a_cut_that_begins_where_the_machine_stands_is_corrected() 
 #[test]
 fn by_the_model_of_another_machine_nothing_is_worse() {
     let wrong: [(&str, Change, f64); 12] = [
-        ("1 ms late", |axis| axis.delays.drive_s += 0.001, 1.0),
-        ("2 ms late", |axis| axis.delays.drive_s += 0.002, 1.0),
-        ("3 ms late", |axis| axis.delays.drive_s += 0.003, 1.0),
+        ("1 ms late", |axis| axis.drive_delay_s += 0.001, 1.0),
+        ("2 ms late", |axis| axis.drive_delay_s += 0.002, 1.0),
+        ("3 ms late", |axis| axis.drive_delay_s += 0.003, 1.0),
         ("3 times as heavy", |_| {}, 3.0),
         ("2 times as heavy", |_| {}, 2.0),
         ("1.3 times as heavy", |_| {}, 1.3),
         ("half as heavy", |_| {}, 0.5),
-        (
-            "10 % more gain of position",
-            |axis| axis.parameters.kp_1_s *= 1.1,
-            1.0,
-        ),
-        (
-            "10 % less gain of position",
-            |axis| axis.parameters.kp_1_s *= 0.9,
-            1.0,
-        ),
-        (
-            "20 % more gain of position",
-            |axis| axis.parameters.kp_1_s *= 1.2,
-            1.0,
-        ),
+        ("10 % more gain of position", |axis| axis.kp_1_s *= 1.1, 1.0),
+        ("10 % less gain of position", |axis| axis.kp_1_s *= 0.9, 1.0),
+        ("20 % more gain of position", |axis| axis.kp_1_s *= 1.2, 1.0),
         (
             "40 % less gain of speed",
-            |axis| axis.parameters.kv_nm_s_per_rad *= 0.6,
+            |axis| axis.kv_nm_s_per_rad *= 0.6,
             1.0,
         ),
         (
             "twice the friction",
-            |axis| axis.parameters.coulomb_friction_nm *= 2.0,
+            |axis| axis.coulomb_friction_nm *= 2.0,
             1.0,
         ),
     ];

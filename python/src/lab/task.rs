@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use feedwright::command::find;
-use feedwright::control::{AxisKnowledge, AxisStatistics, Controller, ControllerRow, Knows};
+use feedwright::control::{Controller, ControllerRow, Knows, Parameters};
 use feedwright::sim::{Known, Machine};
 use feedwright::{
     Choices, Controllers, Entry, Job, JobOutcome, JobRequest, Make, Setup, UNCORRECTED,
@@ -235,11 +235,9 @@ pub(super) fn told<'py>(
 ) -> PyResult<Bound<'py, PyTuple>> {
     let read_only = py.import("types")?.getattr("MappingProxyType")?;
     let axis = |i: usize| {
-        let mut axis = known
-            .axis(i)
-            .with_statistics(known.period.periods(), AxisStatistics::NOTHING);
+        let mut axis = known.axis(i).nominal;
         let numbers = PyDict::new(py);
-        for number in AxisKnowledge::NUMBERS {
+        for number in Parameters::NUMBERS {
             numbers.set_item(number.name, *(number.of)(&mut axis))?;
         }
         read_only.call1((numbers,))

@@ -15,26 +15,17 @@
 //! Source: Franklin, Powell and Workman (1998), Digital Control of Dynamic Systems, chapter 4, for
 //! delays of whole periods.
 
+use super::Parameters;
+
 /// Largest number of servo periods by which commands are late: the controller looks one servo
 /// period ahead for each. A bus takes one to three.
 pub const MAX_COMMAND_PERIODS: usize = 8;
 
-/// Delays of commands, references and positions, s.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct LoopDelays {
-    /// Delay from the control to the position loop, rounded to whole servo periods.
-    pub command_s: f64,
-    /// Delay from the position loop to the speed loop.
-    pub drive_s: f64,
-    /// Delay from the encoder to the position loop.
-    pub measurement_s: f64,
-}
-
-impl LoopDelays {
+impl Parameters {
     /// Returns the servo periods from a command until the position loop has it.
     pub fn command_periods(&self, servo_s: f64) -> usize {
         // The cast saturates to zero where the float is negative or NaN.
-        (libm::round(self.command_s / servo_s) as usize).min(MAX_COMMAND_PERIODS)
+        (libm::round(self.command_delay_s / servo_s) as usize).min(MAX_COMMAND_PERIODS)
     }
 }
 
@@ -126,10 +117,10 @@ mod tests {
 
     #[test]
     fn delays_are_rounded_to_whole_servo_periods_and_bounded() {
-        let periods = |command_s| {
-            LoopDelays {
-                command_s,
-                ..LoopDelays::default()
+        let periods = |command_delay_s| {
+            Parameters {
+                command_delay_s,
+                ..Parameters::NOTHING
             }
             .command_periods(0.001)
         };

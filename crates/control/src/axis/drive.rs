@@ -31,27 +31,10 @@
 
 use core::f64::consts::TAU;
 
-use super::{AxisModel, AxisState, within};
+use super::numbers::Part;
+use super::{AxisModel, AxisState, Parameters, within};
 
-/// Settings of a drive in addition to the gains of its loops. Zero omits a part.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct DriveParameters {
-    /// Integral time of the speed loop, s.
-    pub speed_integral_s: f64,
-    /// Share of the command's speed that goes to the speed loop.
-    pub velocity_feedforward: f64,
-    /// Share of the torque for the command's acceleration that goes to the torque.
-    pub acceleration_feedforward: f64,
-    /// Corner of the torque filter, Hz.
-    pub torque_filter_hz: f64,
-    /// Highest reference speed, rad/s.
-    pub speed_limit_rad_s: f64,
-    /// Time over which the drive takes the speed from positions, s. Up to one mechanics period the
-    /// drive sees the speed itself.
-    pub speed_window_s: f64,
-}
-
-impl DriveParameters {
+impl Parameters {
     /// Returns the delay with which the speed loop sees the speed, s.
     pub fn speed_late_s(&self, mechanics_s: f64) -> f64 {
         (0.5 * (self.speed_window_s - mechanics_s)).max(0.0)
@@ -130,7 +113,8 @@ impl DriveState {
 /// A drive, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveModel {
-    parameters: DriveParameters,
+    velocity_feedforward: f64,
+    speed_limit_rad_s: f64,
     /// True for a P speed loop without any further part.
     plain: bool,
     /// Torque of the acceleration feedforward for a difference of speeds, N m s/rad.
@@ -145,20 +129,24 @@ pub struct DriveModel {
 
 impl DriveModel {
     /// Creates the drive of an axis. The filter is the exact step over a mechanics period.
-    pub fn new(axis_model: &AxisModel, parameters: DriveParameters) -> Self {
+    pub fn new(axis_model: &AxisModel) -> Self {
         let dt_s = axis_model.periods.mechanics_s;
-        let DriveParameters {
+        let Parameters {
+            kv_nm_s_per_rad: gain,
+            inertia_kg_m2,
             speed_integral_s: time_s,
+            velocity_feedforward,
+            acceleration_feedforward,
             torque_filter_hz,
+            speed_limit_rad_s,
             ..
-        } = parameters;
-        let gain = axis_model.parameters.kv_nm_s_per_rad;
-        let late_s = parameters.speed_late_s(dt_s);
+        } = axis_model.parameters;
+        let late_s = axis_model.parameters.speed_late_s(dt_s);
         Self {
-            parameters,
-            plain: parameters == DriveParameters::default(),
-            torque_for_change: parameters.acceleration_feedforward
-                * axis_model.parameters.inertia_kg_m2
+            velocity_feedforward,
+            speed_limit_rad_s,
+            plain: !axis_model.parameters.has(Part::Drive),
+            torque_for_change: acceleration_feedforward * inertia_kg_m2
                 / axis_model.periods.servo_s,
             integral_gain: if time_s > 0.0 {
                 gain * dt_s / time_s
@@ -219,7 +207,7 @@ impl DriveModel {
         let change_rad_s = commanded_rad_s - state.commanded_rad_s;
         (state.commanded_rad, state.commanded_rad_s) = (Some(command_rad), commanded_rad_s);
         DriveReference {
-            speed_rad_s: speed_rad_s + self.parameters.velocity_feedforward * commanded_rad_s,
+            speed_rad_s: speed_rad_s + self.velocity_feedforward * commanded_rad_s,
             torque_nm: self.torque_for_change * change_rad_s,
         }
     }
@@ -249,7 +237,7 @@ impl DriveModel {
         speed_rad_s: f64,
         state: &mut DriveState,
     ) -> f64 {
-        let most_rad_s = self.parameters.speed_limit_rad_s;
+        let most_rad_s = self.speed_limit_rad_s;
         let wanted_rad_s = if most_rad_s > 0.0 {
             within(reference.speed_rad_s, most_rad_s)
         } else {
@@ -285,11 +273,11 @@ impl DriveModel {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Parameters, Periods};
+    use super::super::Periods;
     use super::*;
 
-    fn axis_model() -> AxisModel {
-        let parameters = Parameters {
+    fn axis_model(change: impl FnOnce(&mut Parameters)) -> AxisModel {
+        let mut parameters = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
             kd: 0.0,
@@ -299,7 +287,9 @@ mod tests {
             viscous_friction_nm_s: 0.0,
             coulomb_friction_nm: 0.0,
             coulomb_smoothing_rad_s: 0.5,
+            ..Parameters::NOTHING
         };
+        change(&mut parameters);
         AxisModel::new(
             parameters,
             Periods {
@@ -311,9 +301,9 @@ mod tests {
     }
 
     /// Speed after a step of the reference by 1 rad/s, under a constant load.
-    fn speed_rad_s(parameters: DriveParameters, load_nm: f64, time_s: f64) -> f64 {
-        let axis_model = axis_model();
-        let drive = DriveModel::new(&axis_model, parameters);
+    fn speed_rad_s(change: fn(&mut Parameters), load_nm: f64, time_s: f64) -> f64 {
+        let axis_model = axis_model(change);
+        let drive = DriveModel::new(&axis_model);
         let (mut axis, mut state) = (AxisState::default(), DriveState::default());
         for _ in 0..libm::round(time_s / axis_model.periods.mechanics_s) as u64 {
             let reference = DriveReference {
@@ -331,10 +321,7 @@ mod tests {
         // J w'' + Kv w' + Kv / Ti w = Kv / Ti + Kv step': with J 0.01, Kv 2, Ti 20 ms: poles (s +
         // 100)^2, numerator 200 s + 1e4, so w = 1 - e^(-100 t) (1 - 100 t); a constant load L adds
         // -L / J t e^(-100 t).
-        let pi = DriveParameters {
-            speed_integral_s: 0.02,
-            ..DriveParameters::default()
-        };
+        let pi = |axis: &mut Parameters| axis.speed_integral_s = 0.02;
         for time_s in [0.003, 0.01, 0.02, 0.05] {
             let decay = libm::exp(-100.0 * time_s);
             let free = 1.0 - decay * (1.0 - 100.0 * time_s);
@@ -349,19 +336,13 @@ mod tests {
             );
         }
         // Without the integral the load is left: L / Kv.
-        assert!((speed_rad_s(DriveParameters::default(), 0.5, 0.2) - 0.75).abs() < 1e-6);
+        assert!((speed_rad_s(|_| {}, 0.5, 0.2) - 0.75).abs() < 1e-6);
     }
 
     #[test]
     fn the_integral_does_not_wind_up_at_the_torque_limit() {
-        let axis_model = axis_model();
-        let drive = DriveModel::new(
-            &axis_model,
-            DriveParameters {
-                speed_integral_s: 0.02,
-                ..DriveParameters::default()
-            },
-        );
+        let axis_model = axis_model(|axis| axis.speed_integral_s = 0.02);
+        let drive = DriveModel::new(&axis_model);
         let mut state = DriveState::default();
         let asked = |speed_rad_s| DriveReference {
             speed_rad_s,
@@ -388,14 +369,8 @@ mod tests {
 
     #[test]
     fn the_filter_is_a_lag_of_first_order() {
-        let axis_model = axis_model();
-        let drive = DriveModel::new(
-            &axis_model,
-            DriveParameters {
-                torque_filter_hz: 200.0,
-                ..DriveParameters::default()
-            },
-        );
+        let axis_model = axis_model(|axis| axis.torque_filter_hz = 200.0);
+        let drive = DriveModel::new(&axis_model);
         let mut state = DriveState::default();
         let reference = DriveReference {
             speed_rad_s: 1.0,
@@ -410,13 +385,10 @@ mod tests {
 
     #[test]
     fn feedforward_is_the_commands_speed_and_the_torque_for_its_acceleration() {
-        let axis_model = axis_model();
-        let parameters = DriveParameters {
-            velocity_feedforward: 0.9,
-            acceleration_feedforward: 0.5,
-            ..DriveParameters::default()
-        };
-        let drive = DriveModel::new(&axis_model, parameters);
+        let axis_model = axis_model(|axis| {
+            (axis.velocity_feedforward, axis.acceleration_feedforward) = (0.9, 0.5);
+        });
+        let drive = DriveModel::new(&axis_model);
         let (mut axis, mut state) = (AxisState::default(), DriveState::default());
         // c = a t^2 / 2 with a = 40 rad/s^2: at t = n Ts the backward difference is a (n - 1/2) Ts.
         for n in 0..100_u32 {
@@ -439,14 +411,8 @@ mod tests {
 
     #[test]
     fn a_speed_that_grows_evenly_is_seen_late_by_half_the_window() {
-        let axis_model = axis_model();
-        let drive = DriveModel::new(
-            &axis_model,
-            DriveParameters {
-                speed_window_s: 0.003,
-                ..DriveParameters::default()
-            },
-        );
+        let axis_model = axis_model(|axis| axis.speed_window_s = 0.003);
+        let drive = DriveModel::new(&axis_model);
         let mut state = DriveState::default();
         let (at_rest, dt_s) = (DriveReference::default(), axis_model.periods.mechanics_s);
         let mut torque_nm = 0.0;
@@ -470,17 +436,14 @@ mod tests {
 
     #[test]
     fn the_reference_keeps_to_the_speed_limit() {
-        let limited = DriveParameters {
-            speed_limit_rad_s: 0.6,
-            ..DriveParameters::default()
-        };
+        let limited = |axis: &mut Parameters| axis.speed_limit_rad_s = 0.6;
         assert!((speed_rad_s(limited, 0.0, 0.2) - 0.6).abs() < 1e-9);
     }
 
     #[test]
     fn what_is_all_zero_is_the_plain_loop_to_the_bit() {
-        let axis_model = axis_model();
-        let drive = DriveModel::new(&axis_model, DriveParameters::default());
+        let axis_model = axis_model(|_| {});
+        let drive = DriveModel::new(&axis_model);
         let mut state = DriveState::default();
         for speed_rad_s in [0.1, -3.0, 100.0] {
             let reference = DriveReference {
@@ -497,16 +460,13 @@ mod tests {
 
     #[test]
     fn a_drive_that_has_moved_for_long_goes_on_as_it_is() {
-        for parameters in [
-            DriveParameters::default(),
-            DriveParameters {
-                speed_integral_s: 0.01,
-                torque_filter_hz: 400.0,
-                velocity_feedforward: 0.9,
-                ..Default::default()
-            },
-        ] {
-            let (axis_model, drive) = (axis_model(), DriveModel::new(&axis_model(), parameters));
+        let plain = axis_model(|_| {});
+        let with_parts = plain.with(|axis| {
+            (axis.speed_integral_s, axis.torque_filter_hz) = (0.01, 400.0);
+            axis.velocity_feedforward = 0.9;
+        });
+        for axis_model in [plain, with_parts] {
+            let drive = DriveModel::new(&axis_model);
             let (mut state, sent) = drive.moving(&axis_model, 30.0, 0.4);
             for _ in 0..10_000 {
                 assert!((drive.torque_nm(&axis_model, sent, 30.0, &mut state) - 0.4).abs() < 1e-9);
@@ -516,7 +476,7 @@ mod tests {
             let reference = drive.position_loop(&axis_model, 0.6, 0.6, &mut axis, &mut first);
             assert_eq!(
                 reference.speed_rad_s,
-                30.0 * parameters.velocity_feedforward
+                30.0 * axis_model.parameters.velocity_feedforward
             );
         }
     }

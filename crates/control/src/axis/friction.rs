@@ -30,7 +30,8 @@
 
 use core::array::from_fn;
 
-use super::AxisModel;
+use super::numbers::Part;
+use super::{AxisModel, Parameters};
 use crate::activation::{exp, tanh};
 
 /// Smallest level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction makes the
@@ -42,25 +43,11 @@ const LEAST_DECAY: f64 = 4.248_354_255_291_589e-18;
 /// Argument beyond which tanh is 1 to the last bit.
 const SATURATED: f64 = 20.0;
 
-/// Friction in addition to the Coulomb and viscous friction of [`super::Parameters`]. Zero omits a
-/// part.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct FrictionParameters {
-    /// Excess of the Coulomb friction in the positive direction, N m. In the negative direction it
-    /// is lower by the same amount.
-    pub coulomb_asymmetry_nm: f64,
-    /// Excess of the friction at rest over the Coulomb friction, N m.
-    pub stribeck_nm: f64,
-    /// Speed over which the Stribeck part decays, rad/s.
-    pub stribeck_rad_s: f64,
-    /// Deflection before the axis slides, rad.
-    pub presliding_rad: f64,
-}
-
 /// Friction of an axis, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionModel {
-    parameters: FrictionParameters,
+    coulomb_asymmetry_nm: f64,
+    stribeck_nm: f64,
     dt_s: f64,
     viscous_nm_s: f64,
     coulomb_nm: f64,
@@ -71,21 +58,30 @@ pub struct FrictionModel {
 }
 
 impl FrictionModel {
-    /// Creates the friction of an axis; the parameters of the axis have the Coulomb and viscous
-    /// parts.
-    pub fn new(axis_model: &AxisModel, parameters: FrictionParameters) -> Self {
-        let FrictionParameters {
+    /// Creates the friction of an axis; `None` where it is Coulomb and viscous friction alone.
+    pub fn if_present(axis_model: &AxisModel) -> Option<Self> {
+        let is_present = axis_model.parameters.has(Part::Friction);
+        is_present.then(|| Self::new(axis_model))
+    }
+
+    /// Creates the friction of an axis.
+    pub fn new(axis_model: &AxisModel) -> Self {
+        let Parameters {
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            coulomb_asymmetry_nm,
             stribeck_nm,
             stribeck_rad_s,
             presliding_rad,
             ..
-        } = parameters;
-        let breakaway_nm = axis_model.parameters.coulomb_friction_nm + stribeck_nm;
+        } = axis_model.parameters;
+        let breakaway_nm = coulomb_friction_nm + stribeck_nm;
         Self {
-            parameters,
+            coulomb_asymmetry_nm,
+            stribeck_nm,
             dt_s: axis_model.periods.mechanics_s,
-            viscous_nm_s: axis_model.parameters.viscous_friction_nm_s,
-            coulomb_nm: axis_model.parameters.coulomb_friction_nm,
+            viscous_nm_s: viscous_friction_nm_s,
+            coulomb_nm: coulomb_friction_nm,
             inverse_smoothing_s: axis_model.inverse_smoothing_s,
             inverse_stribeck_s: if stribeck_rad_s > 0.0 {
                 1.0 / stribeck_rad_s
@@ -211,7 +207,7 @@ impl FrictionModel {
         speeds_rad_s: &[f64; L],
         directions: &[f64; L],
     ) -> [f64; L] {
-        let stribeck_nm = axis_models.map(|axis_model| axis_model.parameters.stribeck_nm);
+        let stribeck_nm = axis_models.map(|axis_model| axis_model.stribeck_nm);
         let mut low_nm = [0.0; L];
         if stribeck_nm.iter().any(|nm| *nm > 0.0) {
             let ratios: [f64; L] = from_fn(|i| speeds_rad_s[i] * axis_models[i].inverse_stribeck_s);
@@ -226,7 +222,7 @@ impl FrictionModel {
         }
         from_fn(|i| {
             axis_models[i].coulomb_nm
-                + axis_models[i].parameters.coulomb_asymmetry_nm * directions[i]
+                + axis_models[i].coulomb_asymmetry_nm * directions[i]
                 + low_nm[i]
         })
     }
@@ -260,23 +256,23 @@ fn decay(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Parameters, Periods};
+    use super::super::Periods;
     use super::*;
 
     #[test]
     fn several_masses_at_once_are_each_as_it_is_alone() {
-        let stribeck = FrictionParameters {
+        let stribeck = Parameters {
             stribeck_nm: 0.1,
             stribeck_rad_s: 1.0,
             ..DAHL
         };
-        let sliding = FrictionParameters {
+        let sliding = Parameters {
             presliding_rad: 0.0,
             ..stribeck
         };
         for parameters in [
             [DAHL, stribeck],
-            [sliding, FrictionParameters::default()],
+            [sliding, Parameters::NOTHING],
             [stribeck, sliding],
         ] {
             let axis_models = parameters.map(|parameters| friction(0.2, 1e-4, parameters));
@@ -310,11 +306,7 @@ mod tests {
 
     const J: f64 = 0.01;
 
-    fn friction(
-        coulomb_nm: f64,
-        mechanics_s: f64,
-        parameters: FrictionParameters,
-    ) -> FrictionModel {
+    fn friction(coulomb_nm: f64, mechanics_s: f64, parameters: Parameters) -> FrictionModel {
         let axis_model = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
@@ -325,20 +317,19 @@ mod tests {
             viscous_friction_nm_s: 0.0,
             coulomb_friction_nm: coulomb_nm,
             coulomb_smoothing_rad_s: 1e-4,
+            ..parameters
         };
         let periods = Periods {
             servo_s: 0.001,
             mechanics_s,
             mechanics_per_servo: 10,
         };
-        FrictionModel::new(&AxisModel::new(axis_model, periods), parameters)
+        FrictionModel::new(&AxisModel::new(axis_model, periods))
     }
 
-    const DAHL: FrictionParameters = FrictionParameters {
-        coulomb_asymmetry_nm: 0.0,
-        stribeck_nm: 0.0,
-        stribeck_rad_s: 0.0,
+    const DAHL: Parameters = Parameters {
         presliding_rad: 0.01,
+        ..Parameters::NOTHING
     };
 
     /// Friction, N m, of a motion that a speed of `rad_s` is forced upon for a time; by what it
@@ -384,17 +375,17 @@ mod tests {
 
     #[test]
     fn the_level_is_stribecks_curve_and_another_one_each_way() {
-        let parameters = FrictionParameters {
+        let parameters = Parameters {
             coulomb_asymmetry_nm: 0.03,
             stribeck_nm: 0.1,
             stribeck_rad_s: 2.0,
-            presliding_rad: 0.0,
+            ..Parameters::NOTHING
         };
         for presliding_rad in [0.0, 0.001] {
             let axis_model = friction(
                 0.2,
                 1e-4,
-                FrictionParameters {
+                Parameters {
                     presliding_rad,
                     ..parameters
                 },
@@ -437,7 +428,7 @@ mod tests {
     #[test]
     fn a_spring_that_no_period_follows_holds_and_lets_go_at_the_breakaway_torque() {
         // S dt^2 / J = 2e5: an explicit step would be unstable from 4 on.
-        let stiff = FrictionParameters {
+        let stiff = Parameters {
             presliding_rad: 1e-9,
             stribeck_nm: 0.1,
             stribeck_rad_s: 1.0,
@@ -465,11 +456,12 @@ mod tests {
         let ends = [0.0, 1e-300, 1e5];
         for case in 0..27_usize {
             let [coulomb, stribeck, zone] = [ends[case % 3], ends[case / 3 % 3], ends[case / 9]];
-            let parameters = FrictionParameters {
+            let parameters = Parameters {
                 coulomb_asymmetry_nm: coulomb,
                 stribeck_nm: stribeck,
                 stribeck_rad_s: zone,
                 presliding_rad: zone,
+                ..Parameters::NOTHING
             };
             let axis_model = friction(coulomb, 1e-4, parameters);
             let (mut speed, mut presliding) = (0.0, 0.0);

@@ -50,10 +50,8 @@
 //! Departures: the torque limit bounds only the integral, and the speed limit bounds nothing here.
 //! The inverse assumes that no motion needs more.
 
-use super::AxisModel;
-use super::delays::LoopDelays;
-use super::drive::DriveParameters;
-use super::friction::{FrictionModel, FrictionParameters};
+use super::friction::FrictionModel;
+use super::{AxisModel, Parameters};
 use crate::activation::tanh;
 use crate::vector::bounded;
 
@@ -106,8 +104,6 @@ struct ReferenceMotion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisInverse {
     axis_model: AxisModel,
-    drive: DriveParameters,
-    delays: LoopDelays,
     /// Friction in addition to smoothed Coulomb friction.
     friction: Option<FrictionModel>,
     /// Delay of the torque filter, s.
@@ -128,20 +124,17 @@ pub struct AxisInverse {
 
 impl AxisInverse {
     /// Creates the inverse of an axis.
-    pub fn new(
-        axis_model: AxisModel,
-        drive: DriveParameters,
-        friction: FrictionParameters,
-        delays: LoopDelays,
-    ) -> Self {
+    pub fn new(axis_model: AxisModel) -> Self {
+        let AxisModel {
+            parameters,
+            periods,
+            ..
+        } = &axis_model;
         Self {
+            friction: FrictionModel::if_present(&axis_model),
+            filter_lag_s: parameters.filter_lag_s(periods.mechanics_s),
+            speed_late_s: parameters.speed_late_s(periods.mechanics_s),
             axis_model,
-            drive,
-            delays,
-            friction: (friction != FrictionParameters::default())
-                .then(|| FrictionModel::new(&axis_model, friction)),
-            filter_lag_s: drive.filter_lag_s(axis_model.periods.mechanics_s),
-            speed_late_s: drive.speed_late_s(axis_model.periods.mechanics_s),
             presliding_nm: 0.0,
             friction_mm_s: 0.0,
             integral_mm_s: 0.0,
@@ -151,32 +144,16 @@ impl AxisInverse {
     }
 
     /// Inverts another model from now on. Its state stays.
-    pub fn follow(
-        &mut self,
-        axis_model: AxisModel,
-        drive: DriveParameters,
-        friction: FrictionParameters,
-        delays: LoopDelays,
-    ) {
+    pub fn follow(&mut self, axis_model: AxisModel) {
         let Self {
             friction,
             filter_lag_s,
             speed_late_s,
             ..
-        } = Self::new(axis_model, drive, friction, delays);
-        (self.axis_model, self.drive, self.delays) = (axis_model, drive, delays);
+        } = Self::new(axis_model);
+        self.axis_model = axis_model;
         (self.friction, self.filter_lag_s, self.speed_late_s) =
             (friction, filter_lag_s, speed_late_s);
-    }
-
-    /// Creates the inverse of an axis whose drive, friction and delays have no further parts.
-    pub fn plain(axis_model: AxisModel) -> Self {
-        Self::new(
-            axis_model,
-            DriveParameters::default(),
-            FrictionParameters::default(),
-            LoopDelays::default(),
-        )
     }
 
     /// Returns the model that it inverts.
@@ -200,19 +177,19 @@ impl AxisInverse {
     /// Returns the time from the arrival of a command at the position loop to the motion that the
     /// inverse evaluates, s, without the differences.
     pub fn ahead_s(&self) -> f64 {
-        self.delays.drive_s + self.filter_lag_s
+        self.axis_model.parameters.drive_delay_s + self.filter_lag_s
     }
 
     /// Returns the delay until the position loop has a command, s.
     pub fn command_delay_s(&self) -> f64 {
         let servo_s = self.axis_model.periods.servo_s;
-        self.delays.command_periods(servo_s) as f64 * servo_s
+        self.axis_model.parameters.command_periods(servo_s) as f64 * servo_s
     }
 
     /// Returns the time from a measured position to the action of the friction that was compensated
     /// for it, s.
     pub fn late_s(&self) -> f64 {
-        self.command_delay_s() + self.ahead_s() + self.delays.measurement_s
+        self.command_delay_s() + self.ahead_s() + self.axis_model.parameters.measurement_delay_s
     }
 
     /// Returns the friction that the last lead compensates, mm/s of reference speed.
@@ -260,7 +237,8 @@ impl AxisInverse {
         let missing = self.missing(gains, &at_mm, own, load_mm_s);
         self.missing = missing;
         let parameters = &self.axis_model.parameters;
-        let change_1_s = (parameters.kd + self.drive.velocity_feedforward) / servo_s;
+        let change_1_s =
+            (parameters.kd + self.axis_model.parameters.velocity_feedforward) / servo_s;
         let torque_1_s = self.torque_for_lead_1_s();
         let [within, _] = self.integral_gains();
         let needed_mm_s = missing.torque_mm_s - self.integral_mm_s
@@ -296,15 +274,13 @@ impl AxisInverse {
     fn take_in(&mut self, last_mm: f64) {
         let [_, over] = self.integral_gains();
         if over > 0.0 {
-            let Self {
-                axis_model, drive, ..
-            } = self;
-            let change_1_s = (axis_model.parameters.kd + drive.velocity_feedforward)
-                / axis_model.periods.servo_s;
-            let asked_mm_s = axis_model.parameters.kp_1_s * last_mm
-                + change_1_s * (last_mm - self.lead_before_mm);
-            let limit = axis_model.parameters.torque_limit_nm
-                / (axis_model.parameters.kv_nm_s_per_rad * axis_model.parameters.rad_per_mm);
+            let parameters = &self.axis_model.parameters;
+            let change_1_s =
+                (parameters.kd + parameters.velocity_feedforward) / self.axis_model.periods.servo_s;
+            let asked_mm_s =
+                parameters.kp_1_s * last_mm + change_1_s * (last_mm - self.lead_before_mm);
+            let limit =
+                parameters.torque_limit_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
             let integral_mm_s = self.integral_mm_s + over * (asked_mm_s - self.missing.speed_mm_s);
             self.integral_mm_s = bounded(integral_mm_s, -limit, limit);
         }
@@ -314,7 +290,7 @@ impl AxisInverse {
     /// within the period and its value at the end.
     #[inline]
     fn integral_gains(&self) -> [f64; 2] {
-        let time_s = self.drive.speed_integral_s;
+        let time_s = self.axis_model.parameters.speed_integral_s;
         if time_s > 0.0 {
             let periods = &self.axis_model.periods;
             [
@@ -331,7 +307,7 @@ impl AxisInverse {
     #[inline]
     fn torque_for_lead_1_s(&self) -> f64 {
         let (parameters, servo_s) = (&self.axis_model.parameters, self.axis_model.periods.servo_s);
-        let nm_s2 = self.drive.acceleration_feedforward * parameters.inertia_kg_m2;
+        let nm_s2 = self.axis_model.parameters.acceleration_feedforward * parameters.inertia_kg_m2;
         nm_s2 / (parameters.kv_nm_s_per_rad * servo_s * servo_s)
     }
 
@@ -347,7 +323,7 @@ impl AxisInverse {
             self.axis_model.parameters,
             self.axis_model.periods.mechanics_s,
         );
-        let turning = self.motion(at_mm, self.delays.drive_s);
+        let turning = self.motion(at_mm, self.axis_model.parameters.drive_delay_s);
         let torque = if self.filter_lag_s > 0.0 {
             self.motion(at_mm, self.ahead_s())
         } else {
@@ -383,12 +359,12 @@ impl AxisInverse {
     #[inline]
     fn without_lead(&self, at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
         let servo_s = self.axis_model.periods.servo_s;
-        let DriveParameters {
+        let Parameters {
             velocity_feedforward,
             acceleration_feedforward,
             ..
-        } = self.drive;
-        let late_s = self.delays.measurement_s;
+        } = self.axis_model.parameters;
+        let late_s = self.axis_model.parameters.measurement_delay_s;
         let (mut asked_mm_s, mut fed_nm_s) = (0.0, 0.0);
         if late_s > 0.0 {
             let [here_mm, before_mm] =

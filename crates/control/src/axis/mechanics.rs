@@ -6,8 +6,8 @@
 
 use core::array::from_fn;
 
-use super::friction::{FrictionModel, FrictionParameters};
-use super::transmission::{TableState, TransmissionModel, TransmissionParameters};
+use super::friction::FrictionModel;
+use super::transmission::{TableState, TransmissionModel};
 use super::{AxisModel, AxisState, friction_signs};
 
 /// Masses and friction of an axis.
@@ -55,21 +55,12 @@ impl MechanicsState {
 }
 
 impl MechanicsModel {
-    /// Creates the mechanics of an axis with this friction and this screw.
-    pub fn new(
-        axis_model: &AxisModel,
-        friction: FrictionParameters,
-        transmission: TransmissionParameters,
-    ) -> Self {
+    /// Creates the mechanics of an axis.
+    pub fn new(axis_model: &AxisModel) -> Self {
         Self {
             axis_model: *axis_model,
-            friction: (friction != FrictionParameters::default())
-                .then(|| FrictionModel::new(axis_model, friction)),
-            transmission: TransmissionModel::new(
-                axis_model.parameters.inertia_kg_m2,
-                axis_model.periods.mechanics_s,
-                transmission,
-            ),
+            friction: FrictionModel::if_present(axis_model),
+            transmission: TransmissionModel::new(axis_model),
             inverse_inertia: 1.0 / axis_model.parameters.inertia_kg_m2,
         }
     }
@@ -221,6 +212,7 @@ mod tests {
             viscous_friction_nm_s: 0.0,
             coulomb_friction_nm,
             coulomb_smoothing_rad_s: 0.5,
+            ..Parameters::NOTHING
         };
         AxisModel::new(
             parameters,
@@ -232,13 +224,11 @@ mod tests {
         )
     }
 
-    fn screw(resonance_rad_s: f64) -> TransmissionParameters {
-        TransmissionParameters {
-            table_share: 0.4,
-            resonance_rad_s,
-            damping_ratio: 0.05,
-            backlash_rad: 0.0,
-        }
+    fn with_screw(axis_model: &AxisModel, resonance_rad_s: f64) -> AxisModel {
+        axis_model.with(|axis| {
+            (axis.table_share, axis.damping_ratio) = (0.4, 0.05);
+            axis.resonance_rad_s = resonance_rad_s;
+        })
     }
 
     /// Returns the state after a tenth of a second under 1 N m at the motor and 0.3 N m against the
@@ -251,20 +241,13 @@ mod tests {
 
     #[test]
     fn several_axes_at_once_are_each_as_it_is_alone() {
-        let dahl = FrictionParameters {
-            presliding_rad: 0.001,
-            ..FrictionParameters::default()
-        };
-        let of =
-            |friction, transmission| MechanicsModel::new(&axis_model(0.2), friction, transmission);
-        let none = FrictionParameters::default();
+        let none = axis_model(0.2);
+        let dahl = none.with(|axis| axis.presliding_rad = 0.001);
         for axis_models in [
-            [
-                of(dahl, screw(300.0)),
-                of(dahl, TransmissionParameters::RIGID),
-            ],
-            [of(dahl, screw(300.0)), of(none, screw(200.0))],
+            [with_screw(&dahl, 300.0), dahl],
+            [with_screw(&dahl, 300.0), with_screw(&none, 200.0)],
         ] {
+            let axis_models = axis_models.map(|axis_model| MechanicsModel::new(&axis_model));
             let mut alone = [MechanicsState::at_rest(0.0); 2];
             let mut abreast = alone;
             for step in 0..5000_u32 {
@@ -284,16 +267,8 @@ mod tests {
     fn a_stiff_screw_is_as_a_rigid_one() {
         for coulomb_nm in [0.0, 0.2] {
             let axis_model = axis_model(coulomb_nm);
-            let rigid = driven(&MechanicsModel::new(
-                &axis_model,
-                FrictionParameters::default(),
-                TransmissionParameters::RIGID,
-            ));
-            let stiff = driven(&MechanicsModel::new(
-                &axis_model,
-                FrictionParameters::default(),
-                screw(5e3),
-            ));
+            let rigid = driven(&MechanicsModel::new(&axis_model));
+            let stiff = driven(&MechanicsModel::new(&with_screw(&axis_model, 5e3)));
             let (a, b) = (rigid.motor.speed_rad_s, stiff.motor.speed_rad_s);
             assert!((a - b).abs() < 2e-3 * a, "{a} {b}");
             assert_eq!(
@@ -305,11 +280,7 @@ mod tests {
 
     #[test]
     fn both_masses_together_have_the_momentum_that_the_torques_gave() {
-        let state = driven(&MechanicsModel::new(
-            &axis_model(0.0),
-            FrictionParameters::default(),
-            screw(300.0),
-        ));
+        let state = driven(&MechanicsModel::new(&with_screw(&axis_model(0.0), 300.0)));
         let momentum = 0.006 * state.motor.speed_rad_s + 0.004 * state.table.speed_rad_s;
         assert!((momentum - 0.7 * 0.1).abs() < 1e-9, "{momentum}");
     }

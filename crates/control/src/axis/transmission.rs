@@ -17,35 +17,16 @@
 //! Source: two-mass drive as in Altintas (2012), Manufacturing Automation, section 5; backlash as a
 //! dead zone with damping in contact, Nordin and Gutman (2002), eq. 4.
 
-/// Parameters of a ball screw at the motor shaft. With all of them zero it is rigid.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct TransmissionParameters {
-    /// Part of the axis's inertia on the side of the table.
-    pub table_share: f64,
-    /// Resonance of the table on the screw while the motor is held, rad/s.
-    pub resonance_rad_s: f64,
-    /// Damping ratio of that resonance.
-    pub damping_ratio: f64,
-    /// Backlash, rad.
-    pub backlash_rad: f64,
-}
+use super::{AxisModel, Parameters};
 
-impl TransmissionParameters {
-    /// A rigid screw.
-    pub const RIGID: Self = Self {
-        table_share: 0.0,
-        resonance_rad_s: 0.0,
-        damping_ratio: 0.0,
-        backlash_rad: 0.0,
-    };
-
-    /// Returns the windup of the screw of an axis by the friction of both directions, rad: 2 Fc /
-    /// k. It is 0 for a rigid screw.
-    pub fn windup_rad(&self, inertia_kg_m2: f64, coulomb_friction_nm: f64) -> f64 {
+impl Parameters {
+    /// Returns the windup of the screw by the friction of both directions, rad: 2 Fc / k. It is 0
+    /// for a rigid screw.
+    pub fn windup_rad(&self) -> f64 {
         let stiffness_nm_rad =
-            inertia_kg_m2 * self.table_share * self.resonance_rad_s * self.resonance_rad_s;
+            self.inertia_kg_m2 * self.table_share * self.resonance_rad_s * self.resonance_rad_s;
         if stiffness_nm_rad > 0.0 {
-            2.0 * coulomb_friction_nm / stiffness_nm_rad
+            2.0 * self.coulomb_friction_nm / stiffness_nm_rad
         } else {
             0.0
         }
@@ -83,19 +64,18 @@ pub struct TransmissionModel {
 const MOST_PHASE_RAD: f64 = 1.0;
 
 impl TransmissionModel {
-    /// Creates the screw of an axis with this inertia, kg m2. Returns `None` where the screw is
-    /// rigid, or too stiff for the mechanics period.
-    pub fn new(
-        inertia_kg_m2: f64,
-        mechanics_s: f64,
-        parameters: TransmissionParameters,
-    ) -> Option<Self> {
-        let TransmissionParameters {
+    /// Creates the screw of an axis. Returns `None` where the screw is rigid, or too stiff for the
+    /// mechanics period.
+    pub fn new(axis_model: &AxisModel) -> Option<Self> {
+        let mechanics_s = axis_model.periods.mechanics_s;
+        let Parameters {
+            inertia_kg_m2,
             table_share,
             resonance_rad_s,
             damping_ratio,
             backlash_rad,
-        } = parameters;
+            ..
+        } = axis_model.parameters;
         let table_kg_m2 = inertia_kg_m2 * table_share;
         let free_rad_s = resonance_rad_s / libm::sqrt(1.0 - table_share);
         let gives = table_share > 0.0
@@ -136,6 +116,8 @@ mod tests {
     extern crate std;
     use std::vec::Vec;
 
+    use super::super::Periods;
+    use super::super::numbers::Part;
     use super::*;
     use core::f64::consts::TAU;
 
@@ -143,39 +125,47 @@ mod tests {
     const INERTIA_KG_M2: f64 = 0.01;
     const BACKLASH_RAD: f64 = 0.003;
 
-    fn soft(backlash_rad: f64) -> (TransmissionModel, TransmissionParameters) {
+    fn model(screw: Parameters) -> Option<TransmissionModel> {
+        let periods = Periods {
+            servo_s: DT_S,
+            mechanics_s: DT_S,
+            mechanics_per_servo: 1,
+        };
+        TransmissionModel::new(&AxisModel::new(screw, periods))
+    }
+
+    fn soft(backlash_rad: f64) -> (TransmissionModel, Parameters) {
         let resonance_rad_s = TAU * 60.0;
-        let screw = TransmissionParameters {
+        let screw = Parameters {
+            inertia_kg_m2: INERTIA_KG_M2,
             table_share: 0.5,
             resonance_rad_s,
             damping_ratio: 0.02,
             backlash_rad,
+            ..Parameters::NOTHING
         };
-        (
-            TransmissionModel::new(INERTIA_KG_M2, DT_S, screw).expect("it is not rigid"),
-            screw,
-        )
+        (model(screw).expect("it is not rigid"), screw)
     }
 
     #[test]
     fn a_screw_without_a_table_or_a_resonance_that_can_be_followed_is_rigid() {
         let (_, screw) = soft(0.0);
         for rigid in [
-            TransmissionParameters::RIGID,
-            TransmissionParameters {
+            screw.without(&[Part::Screw]),
+            Parameters {
                 table_share: 0.0,
                 ..screw
             },
-            TransmissionParameters {
+            Parameters {
                 resonance_rad_s: 0.0,
                 ..screw
             },
-            TransmissionParameters {
+            Parameters {
                 resonance_rad_s: 1e6,
                 ..screw
             },
         ] {
-            assert_eq!(TransmissionModel::new(INERTIA_KG_M2, DT_S, rigid), None);
+            assert_eq!(model(rigid), None);
         }
     }
 

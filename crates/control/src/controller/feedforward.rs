@@ -277,6 +277,7 @@ pub(super) mod tests {
             viscous_friction_nm_s: 0.03,
             coulomb_friction_nm,
             coulomb_smoothing_rad_s: 0.05,
+            ..Parameters::NOTHING
         }
     }
 
@@ -287,7 +288,7 @@ pub(super) mod tests {
             mechanics_s: 1e-3 * SERVO_S,
             mechanics_per_servo: 1000,
         };
-        AxisInverse::plain(AxisModel::new(axis, periods))
+        AxisInverse::new(AxisModel::new(axis, periods))
     }
 
     /// Following error along the parabola at the end of a second, mm; the mechanics in steps of 1

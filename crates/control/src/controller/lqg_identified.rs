@@ -62,7 +62,7 @@ mod regulated_axis;
 use super::feedforward::preview;
 use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
 use super::{Controller, OffsetBounds, Schedule};
-use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::AxisModel;
 use crate::command::{Command, Measured, SelfReport, Verdict};
 use crate::identifier::IdentifierKind;
 use crate::model::Trained;
@@ -106,8 +106,8 @@ pub struct LqgIdentified<const N: usize> {
 }
 
 impl<const N: usize> LqgIdentified<N> {
-    /// Creates the controller of a machine with this knowledge of its axes.
-    pub fn new(known: [AxisKnowledge; N], settings: LqgSettings) -> Self {
+    /// Creates the controller of a machine with these models of its axes.
+    pub fn new(known: [AxisModel; N], settings: LqgSettings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
         let preview_knots =
             |axis: &AxisLqg| preview(axis.ahead_s(), axis.axis_model().periods.servo_s);
@@ -132,7 +132,7 @@ impl<const N: usize> LqgIdentified<N> {
         let mut seen_mm2 = [0.0; 2];
         for (i, (axis, position_mm)) in self.axes.iter().zip(position_mm).enumerate() {
             let there_mm = window
-                .at(-self.lag_s - axis.known().delays.measurement_s)
+                .at(-self.lag_s - axis.axis_model().parameters.measurement_delay_s)
                 .position_mm;
             let off_mm = [
                 position_mm - axis.alone_mm(),
@@ -201,7 +201,9 @@ impl<const N: usize> LqgIdentified<N> {
             .as_ref()
             .map_or(Verdict::Sound, Validity::verdict);
         let is_exact = self.validity.is_none();
-        let holds = |axis: &AxisLqg| axis.is_possible() && (is_exact || axis.known().is_followed());
+        let holds = |axis: &AxisLqg| {
+            axis.is_possible() && (is_exact || axis.axis_model().parameters.is_followed())
+        };
         if matches!(of_runs, Verdict::Sound) && !self.axes.iter().all(holds) {
             Verdict::Wrong { evidence: None }
         } else {
@@ -249,7 +251,7 @@ impl<const N: usize> Member<N> for LqgIdentified<N> {
             is_known: data.is_known,
             ..LqgSettings::identified(weight, model.servo_s, data.bounds)
         };
-        Some(Self::new(identified.axes, settings))
+        Some(Self::new(identified.axis_models(), settings))
     }
 }
 
@@ -376,8 +378,8 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
         }
     }
 
-    fn known(&self) -> Option<[AxisKnowledge; N]> {
-        Some(self.axes.each_ref().map(AxisLqg::known))
+    fn known(&self) -> Option<[AxisModel; N]> {
+        Some(self.axes.each_ref().map(|axis| *axis.axis_model()))
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {

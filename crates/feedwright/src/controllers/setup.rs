@@ -4,12 +4,12 @@
 //! controller cannot use values that only the simulation knows. A training uses a recording of the
 //! machine.
 use feedwright_control::{
-    AxisKnowledge, Controller, ControllerData, ControllerRow, INVERSION_PERIOD_S, IdentifierKind,
-    Knows, Member, OffsetBounds, RESPONSES_S, Trained, TrainedModel, Uncorrected, Values,
+    AxisModel, Controller, ControllerData, ControllerRow, INVERSION_PERIOD_S, IdentifierKind,
+    Knows, Member, OffsetBounds, Part, RESPONSES_S, Trained, TrainedModel, Uncorrected, Values,
 };
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin,
-    TrainedAxes, Training, an_identifier, identify_axis,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
+    an_identifier, identify_axis,
 };
 use feedwright_sim::{Known, KnownAxis, Machine};
 use miette::Diagnostic;
@@ -308,19 +308,18 @@ impl<'a> Setup<'a> {
 
     /// Returns the true values of the machine's axes, for the limit alone. A screw with a scale on
     /// the table counts as rigid.
-    pub fn truth<const N: usize>(&self) -> [AxisKnowledge; N] {
-        let (periods, statistics) = (self.known.period.periods(), self.machine.statistics::<N>());
+    pub fn truth<const N: usize>(&self) -> [AxisModel; N] {
         std::array::from_fn(|i| {
-            let axis = KnownAxis {
-                transmission: self.machine.axis(i).transmission(),
-                ..*self.known.axis(i)
-            };
-            let axis = if axis.scale_on_table {
-                *self.known.axis(i)
+            let (known, all) = (self.known.axis(i), self.machine.axis(i).parameters());
+            let parts: &[Part] = if known.scale_on_table {
+                &[Part::Noise]
             } else {
-                axis
+                &[Part::Noise, Part::Screw]
             };
-            axis.with_statistics(periods, statistics[i])
+            AxisModel::new(
+                known.nominal.taking(parts, &all),
+                self.known.period.periods(),
+            )
         })
     }
 
@@ -348,11 +347,8 @@ impl<'a> Setup<'a> {
         let excitation = Excitation::axis_parameters(self.machine);
         let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
         let found = |i: usize| {
-            let axis = self.known.axis(i);
-            let settings = DriveSettings::of(axis, &self.known.period);
-            Ok(identify_axis(&recording, i, &settings)?
-                .parameters
-                .believed(axis, &settings))
+            let found = identify_axis(&recording, i, &self.known)?;
+            Ok(found.believed(self.known.axis(i)))
         };
         let axes = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
         self.known = self
@@ -409,7 +405,7 @@ impl<'a> Setup<'a> {
                 let recordings = AxisRecordings::of(machine, seed);
                 let axes = identified_axes(&recordings, &machine.known(), &self.known);
                 self.found = axes.as_ref().err().map(|cause| Err(*cause));
-                let axes = axes.ok()?.axes.with_periods(servo_s)?;
+                let axes = axes.ok()?.axes.at_servo_period(servo_s)?;
                 Some(TrainedModel::of_axes(axes))
             }
             IdentifierKind::Contour => {
@@ -438,12 +434,11 @@ impl<'a> Setup<'a> {
     /// the delays of bus and encoder.
     fn response_s<const N: usize>(&self) -> f64 {
         let [least_s, most_s] = RESPONSES_S;
-        let response_s = |axis: KnownAxis| {
-            let KnownAxis {
-                nominal, delays, ..
-            } = axis;
+        let response_s = |KnownAxis { nominal, .. }: KnownAxis| {
             let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
-            nominal.inertia_kg_m2 / damping_nm_s + delays.drive_s + delays.measurement_s
+            nominal.inertia_kg_m2 / damping_nm_s
+                + nominal.drive_delay_s
+                + nominal.measurement_delay_s
         };
         let axes_s = self.known.axes::<N>().map(response_s);
         axes_s

@@ -1,6 +1,6 @@
 //! What a job assumes of its machine.
 
-use feedwright_control::{Knows, LoopDelays};
+use feedwright_control::{Knows, Part};
 use feedwright_sim::Axis;
 
 use super::Job;
@@ -30,9 +30,7 @@ const IMPERFECTIONS: [(&str, Has); 4] = [
     ("friction that sticks", |axis| {
         axis.stribeck_nm > 0.0 || axis.presliding_um > 0.0
     }),
-    ("late drives", |axis| {
-        axis.loop_delays() != LoopDelays::default()
-    }),
+    ("late drives", |axis| axis.parameters().has(Part::Delays)),
     ("a ball screw that gives", |axis| {
         axis.transmission.is_some()
     }),

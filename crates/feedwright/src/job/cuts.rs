@@ -192,8 +192,8 @@ impl Job {
         date: &str,
     ) -> Option<Model> {
         let axes = IdentifiedAxes {
-            mechanics_s: self.machine.period.mechanics_s,
-            axes: controller.known()?,
+            periods: self.machine.period.periods(),
+            axes: controller.known()?.map(|axis| axis.parameters),
         };
         let (given, part) = (&model.about().source, self.program.file_name());
         let source = format!("{given}; learned while {} cut {part}", self.machine.name);

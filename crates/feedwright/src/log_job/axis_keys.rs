@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use feedwright_control::Part;
 use feedwright_ident::{FoundAxis, ModelTerm, NumberSource, SERVO_MECHANICS};
 use feedwright_sim::rounded;
 
@@ -16,16 +17,6 @@ const MOST_DRIVE_DELAY_S: f64 = 0.02;
 /// Least friction and smoothing that a machine file has.
 const LEAST_SMOOTHING_RAD_S: f64 = 1e-6;
 
-/// Keys of an axis, and remarks on it.
-pub(super) struct AxisKeys {
-    /// Keys of the table of the axis.
-    pub(super) keys: Vec<AxisKey>,
-    /// Keys of the table of its transmission; empty where it is rigid.
-    pub(super) transmission: Vec<AxisKey>,
-    /// Remarks on properties that no key describes.
-    pub(super) remarks: Vec<String>,
-}
-
 /// A key of a machine file.
 pub(super) struct AxisKey {
     pub(super) name: &'static str,
@@ -35,19 +26,16 @@ pub(super) struct AxisKey {
     pub(super) is_told: bool,
 }
 
-/// The keys of an identified axis; `servo_s` is the servo period that follows from the log, s.
-pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> AxisKeys {
+/// The keys of an identified axis, and those of its transmission, none where it is rigid; `servo_s`
+/// is the servo period that follows from the log, s.
+pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> [Vec<AxisKey>; 2] {
     let mechanics_s = servo_s / f64::from(SERVO_MECHANICS);
     let mut keys = vec![];
     mechanics(&mut keys, found, mechanics_s);
     loops(&mut keys, found);
     extras(&mut keys, found, mechanics_s);
     noise(&mut keys, found);
-    AxisKeys {
-        keys,
-        transmission: transmission(found, mechanics_s),
-        remarks: remarks(found),
-    }
+    [keys, transmission(found, mechanics_s)]
 }
 
 fn told(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
@@ -110,11 +98,12 @@ fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     }
 }
 
-fn remarks(found: &FoundAxis) -> Vec<String> {
+/// Says what of the log no key describes.
+pub(super) fn remark(found: &FoundAxis) -> String {
     let late = digits(found.axis_model().get(ModelTerm::RecordDelay));
-    vec![format!(
+    format!(
         "the log has actual positions {late} s later than the commands; no machine shows that by itself"
-    )]
+    )
 }
 
 /// Torque at the shaft for an acceleration of the table of 1 mm/s2, N m.
@@ -148,7 +137,7 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
         nm * get(ModelTerm::Coulomb),
         interval(found, ModelTerm::Coulomb, nm),
     ));
-    let smoothing = found.axis_model().smoothing_at_mm_s(mechanics_s) * TAU / lead;
+    let smoothing = found.axis_model().smoothing_mm_s(mechanics_s) * TAU / lead;
     keys.push(assumed(
         "coulomb_smoothing_rad_s",
         smoothing.max(LEAST_SMOOTHING_RAD_S),
@@ -248,16 +237,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
             comment,
         ));
     }
-    for (name, term) in [
-        ("velocity_feedforward", ModelTerm::VelocityFeedforward),
-        (
-            "acceleration_feedforward",
-            ModelTerm::AccelerationFeedforward,
-        ),
-        ("speed_limit_mm_s", ModelTerm::SpeedLimit),
-    ] {
-        optional(keys, found, name, term, get(term), 1.0);
-    }
+    of_part(keys, found, Part::Drive);
     if let Some(resolved) = &found.resolved {
         let fitted = interval(found, ModelTerm::SpeedWindow, 1.0);
         let of_window = if resolved.torque.is_some() {
@@ -311,14 +291,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
 /// Adds the keys of further properties of its friction.
 fn friction_extras(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     let get = |term| found.axis_model().get(term);
-    optional(
-        keys,
-        found,
-        "presliding_um",
-        ModelTerm::Presliding,
-        1e3 * get(ModelTerm::Presliding),
-        1e3,
-    );
+    of_part(keys, found, Part::Friction);
     let stribeck = get(ModelTerm::Stribeck);
     if stribeck > 0.0 {
         let nm = nm_per_mm_s2(found) * stribeck * get(ModelTerm::Coulomb);
@@ -363,6 +336,18 @@ fn optional(
     let was = found.facts.before.map_or(0.0, |before| before.get(term));
     if value > 0.0 || was > 0.0 {
         keys.push(told(name, value, interval(found, term, scale)));
+    }
+}
+
+/// Adds the keys of a part of the axis that have the value of a term in another unit.
+fn of_part(keys: &mut Vec<AxisKey>, found: &FoundAxis, part: Part) {
+    for term in ModelTerm::ALL {
+        if let Some((of, name, scale)) = term.in_file()
+            && of == part
+        {
+            let value = scale * found.axis_model().get(term);
+            optional(keys, found, name, term, value, scale);
+        }
     }
 }
 

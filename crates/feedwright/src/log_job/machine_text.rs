@@ -8,7 +8,7 @@ use feedwright_sim::MACHINE_FORMAT;
 use feedwright_sim::toml_file::quoted;
 
 use super::LogIdentified;
-use super::axis_keys::{AxisKey, axis_keys};
+use super::axis_keys::{AxisKey, axis_keys, remark};
 
 /// The text of a machine file.
 pub fn machine_text(identified: &LogIdentified, name: &str) -> String {
@@ -109,14 +109,12 @@ fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
 
 /// The keys of an axis.
 fn write_axis(text: &mut String, name: &str, found: &FoundAxis, servo_s: f64) {
-    let axis = axis_keys(found, servo_s);
-    write_keys(text, &axis.keys);
-    for remark in axis.remarks {
-        let _ = writeln!(text, "# {remark}");
-    }
-    if !axis.transmission.is_empty() {
+    let [keys, transmission] = axis_keys(found, servo_s);
+    write_keys(text, &keys);
+    let _ = writeln!(text, "# {}", remark(found));
+    if !transmission.is_empty() {
         let _ = writeln!(text, "\n[axis.{name}.transmission]");
-        write_keys(text, &axis.transmission);
+        write_keys(text, &transmission);
     }
 }
 

@@ -73,7 +73,7 @@ fn machine_limits(machine: &Machine, axis: usize) -> [f64; 2] {
 fn parts(found: &FoundAxis, is_one_sided: bool) -> Vec<MotionPart> {
     let unseen = &found.unseen;
     let is_needed = |part: &MotionPart| {
-        let shows = |term: &ModelTerm| shown_by(*term).contains(part);
+        let shows = |term: &ModelTerm| term.shown_by().contains(part);
         // Without a name, anything may be open.
         let is_open =
             unseen.is_open() && (unseen.terms.is_empty() || unseen.terms.iter().any(shows));
@@ -81,29 +81,4 @@ fn parts(found: &FoundAxis, is_one_sided: bool) -> Vec<MotionPart> {
         is_open || (*part == MotionPart::Reversals && is_missing)
     };
     MotionPart::ALL.into_iter().filter(is_needed).collect()
-}
-
-/// Kinds of motion that show a number of an axis.
-fn shown_by(term: ModelTerm) -> &'static [MotionPart] {
-    use MotionPart::{Creeping, Reversals, Strokes};
-    match term {
-        ModelTerm::LoopGain | ModelTerm::Damping => &[Reversals, Strokes],
-        ModelTerm::Coulomb | ModelTerm::Offset => &[Creeping, Reversals],
-        ModelTerm::VelocityFeedforward | ModelTerm::Viscous | ModelTerm::SpeedLimit => &[Reversals],
-        ModelTerm::Presliding
-        | ModelTerm::Stribeck
-        | ModelTerm::StribeckSpeed
-        | ModelTerm::Backlash => &[Creeping],
-        ModelTerm::RecordDelay
-        | ModelTerm::CommandDelay
-        | ModelTerm::LoopDelay
-        | ModelTerm::AccelerationFeedforward
-        | ModelTerm::Integral
-        | ModelTerm::FilterTime
-        | ModelTerm::SpeedWindow
-        | ModelTerm::SpeedHold
-        | ModelTerm::AccelerationLimit
-        | ModelTerm::Resonance
-        | ModelTerm::TableShare => &[Strokes],
-    }
 }

@@ -36,15 +36,14 @@ pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, 
         };
         let axes = within(document.as_table_mut(), "axis", true)?;
         let axis = within(axes, name, false)?;
-        let keys = axis_keys(found, servo_s);
-        keys.keys
-            .iter()
+        let [keys, of_screw] = axis_keys(found, servo_s);
+        keys.iter()
             .filter(|key| key.is_told)
             .for_each(|key| set(axis, key));
-        if !keys.transmission.is_empty() {
+        if !of_screw.is_empty() {
             let transmission = within(axis, "transmission", false)?;
             let is_new = !transmission.contains_key("damping_ratio");
-            keys.transmission
+            of_screw
                 .iter()
                 .filter(|key| key.is_told || is_new)
                 .for_each(|key| set(transmission, key));

@@ -4,11 +4,11 @@
 //! [`super::axis_statistics`] the noise. If the motion of an axis does not show them, nothing is
 //! found for it.
 
-use feedwright_control::IdentifiedAxes;
+use feedwright_control::{IdentifiedAxes, Part};
 use feedwright_sim::{Known, Machine, map_in_parallel};
 
 use super::Excitation;
-use super::axis_parameters::{AxisEstimate, DriveSettings, NotIdentified, identify_axis};
+use super::axis_parameters::{AxisEstimate, NotIdentified, identify_axis};
 use super::axis_statistics::axis_statistics;
 use super::recording::Recording;
 
@@ -64,31 +64,19 @@ pub fn train_axes<const N: usize>(
     known: &Known,
     used_on: &Known,
 ) -> Result<TrainedAxes<N>, NotIdentified> {
-    let estimate = |i: usize| {
-        identify_axis(
-            &recordings.parameters,
-            i,
-            &DriveSettings::of(known.axis(i), &known.period),
-        )
-    };
+    let estimate = |i: usize| identify_axis(&recordings.parameters, i, known);
     // All, and then the first axis that fails: not the one whose thread is first.
     let estimates = map_in_parallel(0..N, estimate)
         .into_iter()
         .collect::<Result<Vec<_>, _>>()?;
     let believed = |of: &Known| {
-        of.with_axes(|i, axis| {
-            let settings = DriveSettings::of(axis, &of.period);
-            estimates
-                .get(i)
-                .map_or(*axis, |found| found.parameters.believed(axis, &settings))
-        })
+        of.with_axes(|i, axis| estimates.get(i).map_or(*axis, |found| found.believed(axis)))
     };
     let statistics = axis_statistics(&recordings.statistics, &believed(known));
-    let (here, periods) = (believed(used_on), used_on.period.periods());
-    let axes = std::array::from_fn(|i| here.axis(i).with_statistics(periods, statistics[i]));
+    let here = believed(used_on);
     let axes = IdentifiedAxes {
-        mechanics_s: used_on.period.mechanics_s,
-        axes,
+        periods: used_on.period.periods(),
+        axes: std::array::from_fn(|i| here.axis(i).nominal.taking(&[Part::Noise], &statistics[i])),
     };
     // What no axis can be, a component in a servo thread would refuse.
     if !axes.are_possible(used_on.period.servo_s) {

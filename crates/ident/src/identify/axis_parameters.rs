@@ -51,224 +51,105 @@ mod free_run;
 mod output_error_fit;
 mod screw_fit;
 
-use feedwright_control::{
-    DriveParameters, FrictionParameters, LoopDelays, Parameters, Periods, TransmissionParameters,
-};
-use feedwright_sim::{KnownAxis, Period};
+use feedwright_control::{AxisModel, Parameters, Part};
+use feedwright_sim::{Known, KnownAxis};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::recording::Recording;
 use output_error_fit::{OutputErrorFit, START_KNOTS, Stretch};
 
-/// Settings of a drive, which any controller shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DriveSettings {
-    /// Turn of the motor for a travel of the table, rad/mm.
-    pub rad_per_mm: f64,
-    /// Gains of the position loop, 1/s and none.
-    pub kp_1_s: f64,
-    /// See above.
-    pub kd: f64,
-    /// Gain of the speed loop, N m s/rad.
-    pub kv_nm_s_per_rad: f64,
-    /// Torque at which it saturates, N m.
-    pub torque_limit_nm: f64,
-    /// Other settings of the drive; its acceleration feedforward is `fed_kg_m2`.
-    pub(crate) drive: DriveParameters,
-    /// Torque that it feeds forward for an acceleration of the command, N m s^2/rad.
-    pub(crate) fed_kg_m2: f64,
-    /// Delays of bus and encoder.
-    pub delays: LoopDelays,
-    /// True where the position is measured at the table, after the screw.
-    pub scale_on_table: bool,
-    /// Periods of its loops.
-    pub periods: Periods,
-}
-
-impl DriveSettings {
-    /// Returns the drive settings of an axis. Its inertia and its friction are used only for the
-    /// torque that the drive feeds forward.
-    pub fn of(axis: &KnownAxis, period: &Period) -> Self {
-        let nominal = &axis.nominal;
-        Self {
-            rad_per_mm: nominal.rad_per_mm,
-            kp_1_s: nominal.kp_1_s,
-            kd: nominal.kd,
-            kv_nm_s_per_rad: nominal.kv_nm_s_per_rad,
-            torque_limit_nm: nominal.torque_limit_nm,
-            drive: axis.drive,
-            fed_kg_m2: axis.drive.acceleration_feedforward * nominal.inertia_kg_m2,
-            delays: axis.delays,
-            scale_on_table: axis.scale_on_table,
-            periods: period.periods(),
-        }
-    }
-
-    /// Returns the drive settings beside the loops for a given inertia. The torque that the drive
-    /// feeds forward stays the same.
-    pub fn drive_of(&self, inertia_kg_m2: f64) -> DriveParameters {
-        DriveParameters {
-            acceleration_feedforward: self.fed_kg_m2 / inertia_kg_m2,
-            ..self.drive
-        }
-    }
-}
-
-/// Parameters of an axis, at the motor shaft.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(into = "[f64; PARAMETERS]", from = "[f64; PARAMETERS]")]
-pub struct AxisParameters {
-    /// Inertia, kg m2.
-    pub inertia_kg_m2: f64,
-    /// Viscous friction, N m s/rad.
-    pub viscous_friction_nm_s: f64,
-    /// Coulomb friction, N m.
-    pub coulomb_friction_nm: f64,
-    /// Amount by which Coulomb friction is higher in the positive direction and lower in the
-    /// negative, N m. It includes a weight that hangs on the axis.
-    pub coulomb_asymmetry_nm: f64,
-    /// Deflection before the axis slides, rad; zero where the recording does not show it.
-    pub presliding_rad: f64,
-    /// The ball screw; rigid where nothing of it shows.
-    pub transmission: TransmissionParameters,
-}
-
 /// Speed over which Coulomb friction changes its sign where no presliding shows, mm/s of travel:
 /// the value of tnv40. It only keeps the model smooth. No recording could determine it, since it
 /// acts for a millisecond of a reversal.
 const SMOOTHING_MM_S: f64 = 0.08;
 
-/// Number of parameters: inertia, friction and the screw.
-const PARAMETERS: usize = 9;
-/// Number of parameters of an axis with a rigid screw.
-const RIGID_PARAMETERS: usize = 5;
+/// The numbers that are identified: inertia, friction and the screw.
+const IDENTIFIED: [fn(&mut Parameters) -> &mut f64; 9] = [
+    |axis| &mut axis.inertia_kg_m2,
+    |axis| &mut axis.viscous_friction_nm_s,
+    |axis| &mut axis.coulomb_friction_nm,
+    |axis| &mut axis.coulomb_asymmetry_nm,
+    |axis| &mut axis.presliding_rad,
+    |axis| &mut axis.table_share,
+    |axis| &mut axis.resonance_rad_s,
+    |axis| &mut axis.damping_ratio,
+    |axis| &mut axis.backlash_rad,
+];
+/// Number of identified numbers of an axis with a rigid screw.
+const RIGID: usize = 5;
 
-impl From<AxisParameters> for [f64; PARAMETERS] {
-    fn from(parameters: AxisParameters) -> Self {
-        let AxisParameters {
-            inertia_kg_m2,
-            viscous_friction_nm_s,
-            coulomb_friction_nm,
-            coulomb_asymmetry_nm,
-            presliding_rad,
-            transmission:
-                TransmissionParameters {
-                    table_share,
-                    resonance_rad_s,
-                    damping_ratio,
-                    backlash_rad,
-                },
-        } = parameters;
-        [
-            inertia_kg_m2,
-            viscous_friction_nm_s,
-            coulomb_friction_nm,
-            coulomb_asymmetry_nm,
-            presliding_rad,
-            table_share,
-            resonance_rad_s,
-            damping_ratio,
-            backlash_rad,
-        ]
+/// The identified numbers as a row, which is what files hold.
+mod identified {
+    use super::{Deserialize, IDENTIFIED, Parameters};
+    use serde::{Deserializer, Serialize, Serializer};
+
+    pub(super) fn row(mut axis: Parameters) -> [f64; IDENTIFIED.len()] {
+        IDENTIFIED.map(|of| *of(&mut axis))
+    }
+
+    pub(super) fn of_row(row: [f64; IDENTIFIED.len()]) -> Parameters {
+        let mut axis = Parameters::NOTHING;
+        IDENTIFIED
+            .iter()
+            .zip(row)
+            .for_each(|(of, value)| *of(&mut axis) = value);
+        axis
+    }
+
+    pub(super) fn serialize<S: Serializer>(axis: &Parameters, to: S) -> Result<S::Ok, S::Error> {
+        row(*axis).serialize(to)
+    }
+
+    pub(super) fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<Parameters, D::Error> {
+        Deserialize::deserialize(from).map(of_row)
     }
 }
 
-impl From<[f64; PARAMETERS]> for AxisParameters {
-    fn from(values: [f64; PARAMETERS]) -> Self {
-        let [
-            inertia_kg_m2,
-            viscous_friction_nm_s,
-            coulomb_friction_nm,
-            coulomb_asymmetry_nm,
-            presliding_rad,
-            table_share,
-            resonance_rad_s,
-            damping_ratio,
-            backlash_rad,
-        ] = values;
-        Self {
-            inertia_kg_m2,
-            viscous_friction_nm_s,
-            coulomb_friction_nm,
-            coulomb_asymmetry_nm,
-            presliding_rad,
-            transmission: TransmissionParameters {
-                table_share,
-                resonance_rad_s,
-                damping_ratio,
-                backlash_rad,
-            },
-        }
-    }
-}
-
-impl AxisParameters {
-    /// Returns true if the recording shows a compliant ball screw.
-    pub fn has_screw(&self) -> bool {
-        self.transmission != TransmissionParameters::RIGID
-    }
-
-    /// Returns the axis as known after the identification with these settings. Only the drive comes
-    /// from its data sheets.
-    #[must_use]
-    pub fn believed(&self, axis: &KnownAxis, settings: &DriveSettings) -> KnownAxis {
-        let nominal = self.axis_model(settings);
-        let less_nm = axis.nominal.coulomb_friction_nm - nominal.coulomb_friction_nm;
-        KnownAxis {
-            nominal,
-            drive: settings.drive_of(self.inertia_kg_m2),
-            friction: self.friction(),
-            transmission: self.transmission,
-            spare_torque_nm: (axis.spare_torque_nm + less_nm).max(0.0),
-            ..*axis
-        }
-    }
-
-    /// Returns the parameters in the form that the axis model takes.
-    fn axis_model(&self, settings: &DriveSettings) -> Parameters {
-        let DriveSettings {
-            rad_per_mm,
-            kp_1_s,
-            kd,
-            kv_nm_s_per_rad,
-            torque_limit_nm,
-            ..
-        } = *settings;
-        Parameters {
-            rad_per_mm,
-            kp_1_s,
-            kd,
-            kv_nm_s_per_rad,
-            torque_limit_nm,
-            inertia_kg_m2: self.inertia_kg_m2,
-            viscous_friction_nm_s: self.viscous_friction_nm_s,
-            coulomb_friction_nm: self.coulomb_friction_nm,
-            coulomb_smoothing_rad_s: SMOOTHING_MM_S * rad_per_mm,
-        }
-    }
-
-    /// Returns the friction parameters of the axis model beyond its nominal parameters.
-    fn friction(&self) -> FrictionParameters {
-        FrictionParameters {
-            coulomb_asymmetry_nm: self.coulomb_asymmetry_nm,
-            presliding_rad: self.presliding_rad,
-            ..FrictionParameters::default()
-        }
+/// Returns an axis whose drive is known with its identified numbers. The torque that the drive
+/// feeds forward does not depend on what the inertia is taken for.
+fn with_identified(known: &Parameters, found: &Parameters) -> Parameters {
+    let fed_kg_m2 = known.acceleration_feedforward * known.inertia_kg_m2;
+    Parameters {
+        acceleration_feedforward: fed_kg_m2 / found.inertia_kg_m2,
+        inertia_kg_m2: found.inertia_kg_m2,
+        viscous_friction_nm_s: found.viscous_friction_nm_s,
+        coulomb_friction_nm: found.coulomb_friction_nm,
+        coulomb_smoothing_rad_s: SMOOTHING_MM_S * known.rad_per_mm,
+        ..known.taking(&[Part::Friction, Part::Screw], found)
     }
 }
 
 /// Result of the identification of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxisEstimate {
-    /// The parameters.
-    pub parameters: AxisParameters,
+    /// The identified parameters, all others zero: inertia, viscous and Coulomb friction, its
+    /// asymmetry, which includes a weight that hangs on the axis, presliding and the screw, zero
+    /// where the recording does not show them.
+    #[serde(with = "identified")]
+    pub parameters: Parameters,
     /// Their standard errors.
-    pub standard_errors: AxisParameters,
+    #[serde(with = "identified")]
+    pub standard_errors: Parameters,
     /// RMS of what is left of the measured position, um.
     pub left_um: f64,
     /// Steps that it took.
     pub(crate) steps: u32,
+}
+
+impl AxisEstimate {
+    /// Returns the axis as known after the identification. Only the drive comes from its data
+    /// sheets.
+    #[must_use]
+    pub fn believed(&self, axis: &KnownAxis) -> KnownAxis {
+        let nominal = with_identified(&axis.nominal, &self.parameters);
+        let less_nm = axis.nominal.coulomb_friction_nm - nominal.coulomb_friction_nm;
+        KnownAxis {
+            nominal,
+            spare_torque_nm: (axis.spare_torque_nm + less_nm).max(0.0),
+            ..*axis
+        }
+    }
 }
 
 /// Why nothing was found.
@@ -307,26 +188,29 @@ const LEAST_STRETCHES: usize = 2;
 /// summed up is not recorded. e^-5 is 0.7 %.
 const SETTLED_CONSTANTS: f64 = 5.0;
 
-/// Finds the parameters of an axis.
+/// Finds the parameters of the i-th axis, whose drive is set as it is known. What is known of its
+/// inertia and friction is used only for the torque that the drive feeds forward.
 ///
 /// # Errors
 /// Fails if the recording does not determine them.
 pub fn identify_axis<const N: usize>(
     recording: &Recording<N>,
-    axis: usize,
-    settings: &DriveSettings,
+    i: usize,
+    known: &Known,
 ) -> Result<AxisEstimate, NotIdentified> {
-    let servo_s = settings.periods.servo_s;
+    let axis = known.axis(i);
+    let axis_model = AxisModel::new(axis.nominal, known.period.periods());
+    let servo_s = axis_model.periods.servo_s;
     if (recording.feed_period_s - servo_s).abs() > 1e-9 * servo_s {
         return Err(NotIdentified::Period {
             found_s: recording.feed_period_s,
             needed_s: servo_s,
         });
     }
-    let settled_s = SETTLED_CONSTANTS / settings.kp_1_s;
+    let settled_s = SETTLED_CONSTANTS / axis.nominal.kp_1_s;
     let settled = (settled_s / servo_s).ceil() as usize;
     let stretches: Vec<Stretch> = recording
-        .of_axis(axis, settings.delays.command_periods(servo_s))
+        .of_axis(i, axis.nominal.command_periods(servo_s))
         .into_iter()
         .filter(|rows| rows.len() > settled + START_KNOTS)
         .map(|rows| {
@@ -344,13 +228,13 @@ pub fn identify_axis<const N: usize>(
         });
     }
     let fit = OutputErrorFit {
-        settings,
+        known: axis_model,
         stretches,
         settled,
     };
     let rigid = fit.rigid()?;
     // A scale on the table sees what the screw does, and the loops hold the table.
-    if settings.scale_on_table {
+    if axis.scale_on_table {
         return Ok(rigid);
     }
     Ok(screw_fit::with_screw(&fit, &rigid).unwrap_or(rigid))
@@ -360,7 +244,7 @@ pub fn identify_axis<const N: usize>(
 mod tests {
     use super::*;
     use crate::identify::recording::RecordedKnot;
-    use feedwright_sim::{Known, Machine};
+    use feedwright_sim::Machine;
 
     fn known() -> Known {
         Machine::load("stiff".as_ref()).unwrap().known()
@@ -388,9 +272,7 @@ mod tests {
     #[test]
     fn what_does_not_tell_the_parameters_is_refused_with_the_reason() {
         let known = known();
-        let settings = DriveSettings::of(known.axis(0), &known.period);
-        let refused =
-            |recording: &Recording<1>| identify_axis(recording, 0, &settings).unwrap_err();
+        let refused = |recording: &Recording<1>| identify_axis(recording, 0, &known).unwrap_err();
         let sine = |k: usize| libm::sin(0.01 * k as f64);
         // Five time constants of 1/120 s are 84 servo periods.
         assert!(matches!(
@@ -422,15 +304,19 @@ mod tests {
     fn the_torque_that_a_drive_feeds_forward_does_not_depend_on_what_the_inertia_is_taken_for() {
         let known = known();
         let axis = known.axis(0);
-        let settings = DriveSettings::of(axis, &known.period);
-        let parameters = AxisParameters {
-            inertia_kg_m2: 2.0 * axis.nominal.inertia_kg_m2,
-            ..AxisParameters::default()
+        let found = AxisEstimate {
+            parameters: Parameters {
+                inertia_kg_m2: 2.0 * axis.nominal.inertia_kg_m2,
+                ..Parameters::NOTHING
+            },
+            standard_errors: Parameters::NOTHING,
+            left_um: 0.0,
+            steps: 0,
         };
-        let believed = parameters.believed(axis, &settings);
+        let believed = found.believed(axis);
         assert_eq!(
-            believed.drive.acceleration_feedforward,
-            0.5 * axis.drive.acceleration_feedforward
+            believed.nominal.acceleration_feedforward,
+            0.5 * axis.nominal.acceleration_feedforward
         );
         assert_eq!(
             believed.nominal.kv_nm_s_per_rad,

@@ -25,7 +25,7 @@ mod noise;
 mod place;
 use std::f64::consts::TAU;
 
-use feedwright_control::{AxisModel, AxisStatistics};
+use feedwright_control::Parameters;
 use feedwright_sim::{Known, KnownAxis, Period};
 
 use super::recording::Recording;
@@ -61,23 +61,18 @@ const STEPS_ALONE: f64 = 1.3;
 
 /// Estimates the statistics of all axes of a recording, beyond what is known of them. The recording
 /// must have one knot per servo period.
-pub fn axis_statistics<const N: usize>(
-    recording: &Recording<N>,
-    known: &Known,
-) -> [AxisStatistics; N] {
+pub fn axis_statistics<const N: usize>(recording: &Recording<N>, known: &Known) -> [Parameters; N] {
     std::array::from_fn(|i| {
         let axis = known.axis(i);
-        let stretches = recording.of_axis(i, axis.delays.command_periods(known.period.servo_s));
+        let stretches = recording.of_axis(i, axis.nominal.command_periods(known.period.servo_s));
         of_axis(&stretches, axis, &known.period)
     })
 }
 
 /// Estimates the statistics of one axis from commands and measured positions, mm, one pair per
 /// servo period.
-fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> AxisStatistics {
-    let rad_per_mm = AxisModel::new(known.nominal, period.periods())
-        .parameters
-        .rad_per_mm;
+fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> Parameters {
+    let rad_per_mm = known.nominal.rad_per_mm;
     let step_rad = step_mm(stretches) * rad_per_mm;
     let noise_rad = rough_noise_mm(stretches) * rad_per_mm;
     let filter = AxisFilter::new(known, period, noise_rad);
@@ -90,9 +85,9 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> A
     let innovations = filter.innovations(in_rad);
     let segment = ((SEGMENT_S / period.servo_s) as usize).next_power_of_two();
     if innovations.counts.iter().filter(|&&counts| counts).count() < 2 * segment {
-        return AxisStatistics {
+        return Parameters {
             encoder_step_rad: step_rad,
-            ..AxisStatistics::default()
+            ..Parameters::NOTHING
         };
     }
     let least_nm = LEAST_TORQUE * known.nominal.coulomb_friction_nm;
@@ -174,7 +169,7 @@ fn least_rad(noise: &NoiseFit) -> f64 {
         .max(LEAST_NOISES * innovation::LEAST_NOISE_RAD)
 }
 
-fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> AxisStatistics {
+fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Parameters {
     let of_steps_rad2 = step_rad * step_rad / 12.0;
     let least_rad2 = (STEPS_ALONE * of_steps_rad2).max(4.0 * innovation::LEAST_NOISE_RAD.powi(2));
     let alone = noise.encoder_rad2 < least_rad2;
@@ -185,7 +180,7 @@ fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Axi
             .map_or(Wave::default(), |(_, w)| *w)
     };
     let (cogging, interpolation) = (wave(Through::Motor), wave(Through::Encoder));
-    AxisStatistics {
+    Parameters {
         encoder_noise_rad: if alone {
             0.0
         } else {
@@ -207,6 +202,7 @@ fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Axi
         cogging_nm: cogging.amplitude(),
         cogging_phase_rad: cogging.phase_rad(),
         cogging_per_rev: cogging.per_rad,
+        ..Parameters::NOTHING
     }
 }
 

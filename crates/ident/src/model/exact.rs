@@ -1,7 +1,7 @@
 //! Builds a model from a machine without identification: the axes have the values of the machine
 //! file.
 
-use feedwright_control::{IdentifiedAxes, KnownGeometry, ModelBlock, TrainedModel};
+use feedwright_control::{IdentifiedAxes, KnownGeometry, ModelBlock, Part, TrainedModel};
 use feedwright_sim::Machine;
 
 /// The block of bytes, as of [`super::Model::block`], of the first `axes` axes of a machine, 2 or
@@ -29,15 +29,14 @@ pub(crate) fn of_a_block<const N: usize>(
 }
 
 fn exact<const N: usize>(machine: &Machine, geometry: Option<&KnownGeometry<3>>) -> ModelBlock<N> {
-    let (known, periods, statistics) = (
-        machine.known(),
-        machine.period.periods(),
-        machine.statistics::<N>(),
-    );
-    let axes = std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i]));
-    let mechanics_s = periods.mechanics_s;
+    let (known, periods) = (machine.known(), machine.period.periods());
+    let axis = |i: usize| {
+        let all = machine.axis(i).parameters();
+        known.axis(i).nominal.taking(&[Part::Noise], &all)
+    };
+    let axes = std::array::from_fn(axis);
     ModelBlock {
-        model: TrainedModel::of_axes(IdentifiedAxes { mechanics_s, axes }),
+        model: TrainedModel::of_axes(IdentifiedAxes { periods, axes }),
         geometry: of_a_block(geometry),
     }
 }

@@ -2,8 +2,8 @@
 //! [`feedwright_sim::toml_file::key`].
 
 use feedwright_control::{
-    AxisKnowledge, FEED_PERIODS_S, IdentifierKind, MAX_WEIGHT, MECHANICS_PERIODS_S, RESPONSES_S,
-    SERVO_PERIODS_S,
+    FEED_PERIODS_S, IdentifierKind, MAX_WEIGHT, MECHANICS_PERIODS_S, Parameters, RESPONSES_S,
+    SERVO_PERIODS_S, axis_numbers,
 };
 use feedwright_sim::toml_file::Key;
 use feedwright_sim::toml_file::key::{Value, key};
@@ -53,20 +53,35 @@ const CONTOUR: &[Key<Weights>] = &[
     key!(response_s or zero, "s", RESPONSES_S[0], RESPONSES_S[1]),
 ];
 
-/// The mechanics period, then one key for each parameter of an axis. Each of these keys holds one
+/// The mechanics period, then one key for each number of an axis. Each of these keys holds one
 /// value per axis.
 macro_rules! axes_keys {
-    ($($index:literal)*) => {{
-        const { assert!(AxisKnowledge::NUMBERS.len() == [$($index),*].len(), "a key for each number of an axis") };
-        [key!(mechanics_s, "s", MECHANICS_PERIODS_S[0], MECHANICS_PERIODS_S[1]), $(of_axes::<$index>()),*]
-    }};
+    (
+        axis { $(
+            $key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)?
+            $(=> { $place:literal $($number:tt)* })?;
+        )* }
+        transmission { $(
+            $screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal
+            $(=> { $screw_place:literal $($of_screw:tt)* })?;
+        )* }
+        model { $({ $own_place:literal $($own:tt)* };)* }
+    ) => {
+        const AXES: &[Key<Weights>] = &{
+            const FIRST: Key<Weights> =
+                key!(mechanics_s, "s", MECHANICS_PERIODS_S[0], MECHANICS_PERIODS_S[1]);
+            let mut keys = [FIRST; 1 + Parameters::NUMBERS.len()];
+            $($(keys[1 + $place] = of_axes::<$place>();)?)*
+            $($(keys[1 + $screw_place] = of_axes::<$screw_place>();)?)*
+            $(keys[1 + $own_place] = of_axes::<$own_place>();)*
+            keys
+        };
+    };
 }
-const AXES: &[Key<Weights>] = &axes_keys!(
-    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38
-);
+axis_numbers!(axes_keys);
 
-const fn of_axes<const INDEX: usize>() -> Key<Weights> {
-    let number = &AxisKnowledge::NUMBERS[INDEX];
+const fn of_axes<const PLACE: usize>() -> Key<Weights> {
+    let number = &Parameters::NUMBERS[PLACE];
     let [least, most] = number.range;
     Key {
         name: number.name,
@@ -75,8 +90,8 @@ const fn of_axes<const INDEX: usize>() -> Key<Weights> {
         range: [if number.or_none { 0.0 } else { least }, most],
         optional: number.optional,
         value: Value::Numbers {
-            get: |weights| weights.axes.get(INDEX).map_or(&[], Vec::as_slice),
-            set: |weights, numbers| weights.set_of_axes(INDEX, numbers),
+            get: |weights| weights.axes.get(PLACE).map_or(&[], Vec::as_slice),
+            set: |weights, numbers| weights.set_of_axes(PLACE, numbers),
         },
     }
 }

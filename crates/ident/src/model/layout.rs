@@ -1,7 +1,7 @@
 //! The layout of a model file: its tables, and what holds between their values.
 
 use feedwright_control::{
-    AxisKnowledge, HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock,
+    HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock, Parameters,
     position_gains_1_s,
 };
 use feedwright_gcode::suggestion::nearest;
@@ -213,7 +213,7 @@ fn refused_axes(model: &Model) -> Option<String> {
         ));
     }
     let servo_s = model.period.servo_s;
-    AxisKnowledge::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {
+    Parameters::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {
         let (name, unit) = (number.name, number.unit);
         if name == "kp_1_s" {
             let [least, most] = position_gains_1_s(servo_s);

@@ -50,18 +50,16 @@ fn contour<const N: usize>() -> Model {
 
 /// Axes like those of a machine: not short in decimals.
 fn axes<const N: usize>() -> Model {
-    let mut identified = IdentifiedAxes::<N> {
-        mechanics_s: 1e-4,
-        ..IdentifiedAxes::NULL
-    };
+    let mut identified = IdentifiedAxes::<N>::NULL;
+    identified.periods.mechanics_s = 1e-4;
     let mut number = 0.1_f64;
     for axis in &mut identified.axes {
-        for of in AxisKnowledge::NUMBERS {
+        for of in Parameters::NUMBERS {
             let [least, most] = of.range;
             number = libm::sin(7.0 * number + 0.3);
             *(of.of)(axis) = least + (0.2 + 0.1 * number / 3.0) * (most.min(1.0) - least);
         }
-        axis.parameters.kp_1_s *= 100.0;
+        axis.kp_1_s *= 100.0;
     }
     let trained = axes::TrainedAxes {
         axes: identified,
@@ -299,7 +297,7 @@ fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
             .unwrap_or_else(|| panic!("no {name}"));
         rest.split_once(']').unwrap().0.to_owned()
     };
-    for number in AxisKnowledge::NUMBERS {
+    for number in Parameters::NUMBERS {
         let (name, was) = (number.name, array(number.name));
         let after = |to: &str| {
             told(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1))
@@ -336,12 +334,12 @@ fn axes_that_cannot_be_computed_with_are_refused() {
     let mut uneven = axes::<2>();
     uneven.weights.mechanics_s = 0.0003;
     let mut divides = axes::<2>();
-    let presliding = AxisKnowledge::NUMBERS
+    let presliding = Parameters::NUMBERS
         .iter()
         .position(|number| number.name == "presliding_rad")
         .unwrap();
     divides.weights.axes[presliding][1] = 1e-300;
-    let gain = AxisKnowledge::NUMBERS
+    let gain = Parameters::NUMBERS
         .iter()
         .position(|number| number.name == "kp_1_s")
         .unwrap();

@@ -1,154 +1,160 @@
-//! An axis of a machine file, and its parts.
+//! An axis of a machine file, as the table of `crates/control/src/axis/numbers.rs` has it.
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{
-    DriveParameters, FrictionParameters, LoopDelays, Parameters, TransmissionParameters,
-};
-use serde::Serialize;
+use feedwright_control::{Parameters, axis_numbers};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
-/// A servo axis: mechanics at the motor shaft and the two control loops.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Axis {
-    /// Travel for one motor turn, mm.
-    pub lead_mm_per_rev: f64,
-    /// Inertia at the motor shaft, kg m2.
-    pub inertia_kg_m2: f64,
-    /// Viscous friction, N m s/rad.
-    pub viscous_friction_nm_s: f64,
-    /// Coulomb friction torque, N m.
-    pub coulomb_friction_nm: f64,
-    /// Speed over which the Coulomb torque turns its sign, rad/s.
-    pub coulomb_smoothing_rad_s: f64,
-    /// Amplitude of the disturbance torque, N m.
-    pub disturbance_nm: f64,
-    /// Frequency of the disturbance torque, Hz.
-    pub disturbance_hz: f64,
-    /// Proportional gain of the position loop, 1/s.
-    pub kp_1_s: f64,
-    /// Derivative gain of the position loop, dimensionless: rad/s of command for a rad/s of error
-    /// rate.
-    pub kd: f64,
-    /// Gain of the speed loop, N m s/rad.
-    pub kv_nm_s_per_rad: f64,
-    /// Torque at which the drive saturates, N m.
-    pub torque_limit_nm: f64,
-    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is no limit
-    /// in the loop, and the machine's [`super::Limits::normal_accel_mm_s2`] for a correction that
-    /// fades.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub correction_accel_mm_s2: Option<f64>,
-    /// Acceleration of a correction that fades, mm/s2, kept where a plan by axes adds limits that
-    /// the file does not state.
-    #[serde(skip)]
-    pub fade_accel_mm_s2: Option<f64>,
-    /// Delay between the control and the position loop, s; rounded to whole servo periods.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub command_delay_s: f64,
-    /// Delay between the position loop and the drive, s.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub drive_delay_s: f64,
-    /// Bits of the torque command over the range from minus to plus [`Self::torque_limit_nm`]; none
-    /// is without steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub torque_bits: Option<u32>,
-    /// Step of the position encoder, um of travel; 0 is without steps.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub encoder_step_um: f64,
-    /// Integral time of the speed loop, s; here and below zero is without.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub speed_integral_s: f64,
-    /// Part of the command's speed that is fed forward.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub velocity_feedforward: f64,
-    /// Part of the torque for the command's acceleration that is fed forward.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub acceleration_feedforward: f64,
-    /// Corner of the torque filter, Hz.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub torque_filter_hz: f64,
-    /// Highest reference speed of the drive, mm/s of travel.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub speed_limit_mm_s: f64,
-    /// RMS of white noise of the encoder, um of travel.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub encoder_noise_um: f64,
-    /// Amplitude of its error within a signal period, um of travel.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub interpolation_error_um: f64,
-    /// Signal period of the encoder, um of travel.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub signal_period_um: f64,
-    /// Latency of the measured position, s.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub measurement_delay_s: f64,
-    /// Largest extra delay of a reference on its way to the drive, s.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub jitter_s: f64,
-    /// Asymmetry of the Coulomb friction, N m: the friction is higher by this in the positive
-    /// direction, and lower by it in the negative.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub coulomb_asymmetry_nm: f64,
-    /// Friction at rest above the Coulomb friction, N m.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub stribeck_nm: f64,
-    /// Speed over which this extra friction decays, mm/s of travel.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub stribeck_mm_s: f64,
-    /// Deflection before friction slides, um of travel.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub presliding_um: f64,
-    /// Amplitude of the cogging torque, N m.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub cogging_nm: f64,
-    /// Its periods in a motor turn.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub cogging_per_rev: f64,
-    /// Amplitude of the torque ripple, part of the torque.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub ripple: f64,
-    /// Its periods in a motor turn.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub ripple_per_rev: f64,
-    /// RMS of the broadband torque, N m.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub torque_noise_nm: f64,
-    /// Its correlation time, s.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub torque_noise_s: f64,
-    /// RMS of the disturbance's frequency, part of it.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub disturbance_wander: f64,
-    /// Scale error: extra travel of the tool beyond the encoder reading, um per meter.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub scale_um_m: f64,
-    /// Amplitude of the error within a turn of the screw, um.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub pitch_error_um: f64,
-    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period
-    /// is the speed itself.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub speed_window_s: f64,
-    /// True if the drive samples the speed at the start of each servo period and holds it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub speed_held: bool,
-    /// True if the speed loop computes the speed from differences of the encoder.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub speed_from_encoder: bool,
-    /// Most that the axis can, for planners that plan axis by axis; none is what [`super::Limits`]
-    /// and the drive allow. Speed, mm/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_velocity_mm_s: Option<f64>,
-    /// Acceleration, mm/s2.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_accel_mm_s2: Option<f64>,
-    /// Jerk, mm/s3.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_jerk_mm_s3: Option<f64>,
-    /// Ball screw; none is rigid.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub transmission: Option<Transmission>,
+use crate::toml_file::Key;
+use crate::toml_file::key::{Value, key};
+
+/// Type of a field, by the kind of its key.
+macro_rules! field {
+    (required) => { f64 };
+    (or_zero) => { f64 };
+    (flag) => { bool };
+    (optional) => { Option<f64> };
+    (bits) => { Option<u32> };
 }
+
+macro_rules! is_required {
+    (required) => {
+        true
+    };
+    ($other:ident) => {
+        false
+    };
+}
+
+/// Key of a field, by its kind.
+macro_rules! of_kind {
+    (required $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        key!($key, $unit, $least, $most)
+    };
+    (or_zero $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        key!($key or zero, $unit, $least, $most)
+    };
+    (flag $key:ident $($range:tt)*) => {
+        key!(flag $key)
+    };
+    (optional $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        key!(optional $key, $unit, $least, $most)
+    };
+    (bits $key:ident $unit:literal [$least:expr, $most:expr]) => {
+        Key {
+            name: stringify!($key),
+            unit: $unit,
+            range: [$least, $most],
+            optional: true,
+            value: Value::Number {
+                get: |axis| axis.$key.map(f64::from),
+                set: |axis, bits| axis.$key = Some(bits.round() as u32),
+            },
+        }
+    };
+}
+
+/// Number at the motor shaft: the function of the row, or the value of the key itself.
+macro_rules! at_shaft {
+    ($axis:expr, $value:expr, ) => {
+        $value
+    };
+    ($axis:expr, $value:expr, $of:expr) => {{
+        let of: fn(&Axis) -> f64 = $of;
+        of($axis)
+    }};
+    ($axis:expr, $screw:expr, $value:expr, ) => {
+        $value
+    };
+    ($axis:expr, $screw:expr, $value:expr, $of:expr) => {{
+        let of: fn(&Axis, &Transmission) -> f64 = $of;
+        of($axis, $screw)
+    }};
+}
+
+/// Makes [`Axis`] and [`Transmission`] of the table.
+macro_rules! axis {
+    (
+        axis { $(
+            $key:ident $kind:ident $unit:literal $range:tt $words:literal $(needs $needed:ident)?
+            $(=> {
+                $place:literal $part:ident $name:ident $($own_unit:literal)?
+                $rule:ident $([$least:expr, $most:expr])? $format:literal
+                $(($own_words:literal, $of:expr))?
+            })?;
+        )* }
+        transmission { $(
+            $screw_key:ident $screw_kind:ident $screw_unit:literal $screw_range:tt
+            $screw_words:literal
+            $(=> {
+                $screw_place:literal $screw_part:ident $screw_name:ident $($screw_own_unit:literal)?
+                $screw_rule:ident $([$screw_least:expr, $screw_most:expr])? $screw_format:literal
+                $(($screw_own_words:literal, $of_screw:expr))?
+            })?;
+        )* }
+        model { $($model:tt)* }
+    ) => {
+        /// A servo axis: mechanics at the motor shaft and the two control loops.
+        #[derive(Debug, Clone, Copy, Default, PartialEq)]
+        pub struct Axis {
+            $(#[doc = concat!($words, ".")] pub $key: field!($kind),)*
+            /// Acceleration of a correction that fades, mm/s2, kept where a plan by axes adds
+            /// limits that the file does not state; no key of the file.
+            pub fade_accel_mm_s2: Option<f64>,
+            /// Ball screw; none is rigid.
+            pub transmission: Option<Transmission>,
+        }
+
+        /// The ball screw between motor and table: `[axis.x.transmission]`.
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+        pub struct Transmission {
+            $(#[doc = concat!($screw_words, ".")] pub $screw_key: field!($screw_kind),)*
+        }
+
+        /// Keys of `[axis.x]`, `[axis.y]` and `[axis.z]`.
+        pub const AXIS: &[Key<Axis>] = &[$(of_kind!($kind $key $unit $range)),*];
+
+        /// Keys of `[axis.x.transmission]`, `[axis.y.transmission]` and `[axis.z.transmission]`.
+        pub const TRANSMISSION: &[Key<Transmission>] =
+            &[$(of_kind!($screw_kind $screw_key $screw_unit $screw_range)),*];
+
+        impl Serialize for Axis {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let mut map = serializer.serialize_map(None)?;
+                $(if is_required!($kind) || self.$key != <field!($kind)>::default() {
+                    map.serialize_entry(stringify!($key), &self.$key)?;
+                })*
+                if let Some(transmission) = &self.transmission {
+                    map.serialize_entry("transmission", transmission)?;
+                }
+                map.end()
+            }
+        }
+
+        impl Axis {
+            /// Keys that say how much, each with its value, and the key that says over what.
+            pub(super) fn needs(&self) -> impl Iterator<Item = [(&'static str, f64); 2]> {
+                [$($([(stringify!($key), self.$key), (stringify!($needed), self.$needed)],)?)*]
+                    .into_iter()
+            }
+
+            /// Returns the numbers of the axis at the motor shaft.
+            pub fn parameters(&self) -> Parameters {
+                let axis = Parameters {
+                    $($($name: at_shaft!(self, self.$key, $($of)?),)?)*
+                    ..Parameters::NOTHING
+                };
+                self.transmission.map_or(axis, |screw| Parameters {
+                    $($($screw_name: at_shaft!(self, &screw, screw.$screw_key, $($of_screw)?),)?)*
+                    ..axis
+                })
+            }
+        }
+    };
+}
+
+axis_numbers!(axis);
 
 impl Axis {
     /// Returns true if any property of the axis is random.
@@ -163,65 +169,6 @@ impl Axis {
         .any(|&size| size > 0.0)
     }
 
-    /// Returns the parameters in the form that the axis model takes.
-    pub fn parameters(&self) -> Parameters {
-        Parameters {
-            rad_per_mm: self.rad_per_mm(),
-            kp_1_s: self.kp_1_s,
-            kd: self.kd,
-            kv_nm_s_per_rad: self.kv_nm_s_per_rad,
-            torque_limit_nm: self.torque_limit_nm,
-            inertia_kg_m2: self.inertia_kg_m2,
-            viscous_friction_nm_s: self.viscous_friction_nm_s,
-            coulomb_friction_nm: self.coulomb_friction_nm,
-            coulomb_smoothing_rad_s: self.coulomb_smoothing_rad_s,
-        }
-    }
-
-    /// Returns the drive parameters other than the gains of its loops.
-    pub fn drive(&self) -> DriveParameters {
-        DriveParameters {
-            speed_integral_s: self.speed_integral_s,
-            velocity_feedforward: self.velocity_feedforward,
-            acceleration_feedforward: self.acceleration_feedforward,
-            torque_filter_hz: self.torque_filter_hz,
-            speed_limit_rad_s: self.speed_limit_mm_s * self.rad_per_mm(),
-            speed_window_s: self.speed_window_s,
-        }
-    }
-
-    /// Returns the delays of commands, references and positions.
-    pub fn loop_delays(&self) -> LoopDelays {
-        LoopDelays {
-            command_s: self.command_delay_s,
-            drive_s: self.drive_delay_s,
-            measurement_s: self.measurement_delay_s,
-        }
-    }
-
-    /// Returns the friction parameters other than the Coulomb and viscous part.
-    pub fn friction(&self) -> FrictionParameters {
-        FrictionParameters {
-            coulomb_asymmetry_nm: self.coulomb_asymmetry_nm,
-            stribeck_nm: self.stribeck_nm,
-            stribeck_rad_s: self.stribeck_mm_s * self.rad_per_mm(),
-            presliding_rad: self.presliding_um * 1e-3 * self.rad_per_mm(),
-        }
-    }
-
-    /// Its ball screw.
-    pub fn transmission(&self) -> TransmissionParameters {
-        self.transmission
-            .map_or(TransmissionParameters::RIGID, |screw| {
-                TransmissionParameters {
-                    table_share: screw.table_share,
-                    resonance_rad_s: TAU * screw.resonance_hz,
-                    damping_ratio: screw.damping_ratio,
-                    backlash_rad: screw.backlash_um * 1e-3 * TAU / self.lead_mm_per_rev,
-                }
-            })
-    }
-
     /// Backlash that the encoder does not see, mm: a scale on the table sees the gap.
     pub fn hidden_backlash_mm(&self) -> f64 {
         self.hidden_screw()
@@ -231,11 +178,8 @@ impl Axis {
     /// Returns the windup of the screw by the friction of both directions before the table moves,
     /// mm: the part that the encoder does not see.
     pub fn hidden_windup_mm(&self) -> f64 {
-        let windup_rad = self
-            .transmission()
-            .windup_rad(self.inertia_kg_m2, self.coulomb_friction_nm);
         self.hidden_screw()
-            .map_or(0.0, |_| windup_rad / self.rad_per_mm())
+            .map_or(0.0, |_| self.parameters().windup_rad() / self.rad_per_mm())
     }
 
     /// The screw, where the encoder is at the motor.
@@ -247,24 +191,18 @@ impl Axis {
     pub fn rad_per_mm(&self) -> f64 {
         TAU / self.lead_mm_per_rev
     }
-}
 
-/// The ball screw between motor and table: `[axis.x.transmission]`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Transmission {
-    /// Part of the axis's inertia that is on the table's side.
-    pub table_share: f64,
-    /// Resonance of the table on the screw while the motor is held, Hz.
-    pub resonance_hz: f64,
-    /// Its damping ratio.
-    pub damping_ratio: f64,
-    /// Backlash, um of travel.
-    pub backlash_um: f64,
-    /// True if the position is measured at the table (a linear scale) instead of the motor.
-    pub scale_on_table: bool,
-}
+    /// Turn of the motor for a travel in um, rad.
+    fn rad(&self, um: f64) -> f64 {
+        um * 1e-3 * self.rad_per_mm()
+    }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
+    fn signal_per_rad(&self) -> f64 {
+        let signal_rad = self.rad(self.signal_period_um);
+        if signal_rad > 0.0 {
+            TAU / signal_rad
+        } else {
+            0.0
+        }
+    }
 }

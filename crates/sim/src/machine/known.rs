@@ -7,10 +7,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{
-    AxisInverse, AxisKnowledge, AxisModel, AxisStatistics, DriveParameters, FrictionParameters,
-    LoopDelays, Parameters, Periods, TransmissionParameters,
-};
+use feedwright_control::{AxisInverse, AxisModel, Parameters, Part};
 
 use super::{Limits, Machine, Period};
 
@@ -30,19 +27,11 @@ pub struct Known {
 pub struct KnownAxis {
     /// Travel for one motor turn, mm.
     pub lead_mm_per_rev: f64,
-    /// Axis model by the data sheets: loops, inertia, friction, and the torque at which the drive
-    /// saturates.
+    /// Its numbers: loops, drive and delays as the control and the manual state them, inertia and
+    /// friction of the data sheets, a rigid screw until it is identified, and no noise.
     pub nominal: Parameters,
-    /// Other settings of the drive.
-    pub drive: DriveParameters,
-    /// Other friction data of the data sheets.
-    pub friction: FrictionParameters,
-    /// Its ball screw: rigid, until it is identified.
-    pub transmission: TransmissionParameters,
     /// True if the position is measured at the table.
     pub scale_on_table: bool,
-    /// Delays of the bus and the encoder; a manual states both.
-    pub delays: LoopDelays,
     /// Acceleration that a correction may add to the plan's, mm/s2.
     pub correction_accel_mm_s2: f64,
     /// Torque left for acceleration, N m: the limit less friction and less the largest load. The
@@ -71,8 +60,8 @@ impl Known {
             believed.nominal.inertia_kg_m2 *= inertia;
             believed.nominal.viscous_friction_nm_s *= friction;
             believed.nominal.coulomb_friction_nm *= friction;
-            believed.friction.coulomb_asymmetry_nm *= friction;
-            believed.friction.stribeck_nm *= friction;
+            believed.nominal.coulomb_asymmetry_nm *= friction;
+            believed.nominal.stribeck_nm *= friction;
             let more_nm = believed.nominal.coulomb_friction_nm - axis.nominal.coulomb_friction_nm;
             believed.spare_torque_nm = (axis.spare_torque_nm - more_nm).max(0.0);
             believed
@@ -95,43 +84,18 @@ impl Known {
         }
     }
 
-    /// Returns the nominal models of the first N axes.
+    /// Returns the models of the first N axes, with all that is known of them.
     pub fn axis_model<const N: usize>(&self) -> [AxisModel; N] {
         std::array::from_fn(|i| AxisModel::new(self.axis(i).nominal, self.period.periods()))
     }
 
     /// The inverse of the first N axes, with all that is known of them.
     pub fn inverse<const N: usize>(&self) -> [AxisInverse; N] {
-        let axis_models = self.axis_model::<N>();
-        std::array::from_fn(|i| {
-            let axis = self.axis(i);
-            AxisInverse::new(axis_models[i], axis.drive, axis.friction, axis.delays)
-        })
+        self.axis_model().map(AxisInverse::new)
     }
 }
 
 impl KnownAxis {
-    /// Adds periods and statistics and returns the axis in the form that a controller takes.
-    pub fn with_statistics(&self, periods: Periods, statistics: AxisStatistics) -> AxisKnowledge {
-        let Self {
-            nominal: parameters,
-            drive,
-            friction,
-            transmission,
-            delays,
-            ..
-        } = *self;
-        AxisKnowledge {
-            parameters,
-            periods,
-            drive,
-            friction,
-            transmission,
-            delays,
-            statistics,
-        }
-    }
-
     /// Acceleration of the tool with the torque that is left for it, mm/s2.
     pub fn drive_mm_s2(&self) -> f64 {
         self.spare_torque_nm / self.nominal.inertia_kg_m2 * self.lead_mm_per_rev / TAU
@@ -143,15 +107,11 @@ impl Machine {
     pub fn known(&self) -> Known {
         let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
             lead_mm_per_rev: axis.lead_mm_per_rev,
-            nominal: axis.parameters(),
-            drive: DriveParameters {
+            nominal: Parameters {
                 speed_window_s: self.seen_over_s(axis),
-                ..axis.drive()
+                ..axis.parameters().without(&[Part::Screw, Part::Noise])
             },
-            friction: axis.friction(),
-            transmission: TransmissionParameters::RIGID,
             scale_on_table: axis.transmission.is_some_and(|screw| screw.scale_on_table),
-            delays: axis.loop_delays(),
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
             spare_torque_nm: (axis.torque_limit_nm
                 - axis.coulomb_friction_nm
@@ -206,7 +166,10 @@ mod tests {
                 (is.nominal.kp_1_s, is.nominal.kv_nm_s_per_rad),
                 (was.nominal.kp_1_s, was.nominal.kv_nm_s_per_rad)
             );
-            assert_eq!(is.drive, was.drive);
+            let settings = |axis: &KnownAxis| {
+                Parameters::NOTHING.taking(&[Part::Drive, Part::Delays], &axis.nominal)
+            };
+            assert_eq!(settings(is), settings(was));
         }
         assert_eq!(known.misjudged(1.0, 1.0), known);
     }

@@ -411,28 +411,7 @@ fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
 
 /// Checks the conditions between the values of an axis.
 fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
-    let pairs = [
-        (
-            axis.interpolation_error_um,
-            "interpolation_error_um",
-            axis.signal_period_um,
-            "signal_period_um",
-        ),
-        (
-            axis.stribeck_nm,
-            "stribeck_nm",
-            axis.stribeck_mm_s,
-            "stribeck_mm_s",
-        ),
-        (
-            axis.cogging_nm,
-            "cogging_nm",
-            axis.cogging_per_rev,
-            "cogging_per_rev",
-        ),
-        (axis.ripple, "ripple", axis.ripple_per_rev, "ripple_per_rev"),
-    ];
-    for (amount, key, over, needed) in pairs {
+    for [(key, amount), (needed, over)] in axis.needs() {
         if amount > 0.0 && over == 0.0 {
             faults.push(Fault {
                 at: table.place(key),

@@ -7,8 +7,8 @@
 //! Effects that the machine file does not name are skipped, with results identical to the bit.
 
 use feedwright_control::{
-    AxisModel, AxisState, CommandQueue, DriveModel, DriveParameters, DriveState,
-    FrictionParameters, MechanicsModel, MechanicsState, TableState,
+    AxisModel, AxisState, CommandQueue, DriveModel, DriveState, MechanicsModel, MechanicsState,
+    Part, TableState,
 };
 
 use super::drive::{Delay, in_steps, torque_step_nm};
@@ -54,17 +54,11 @@ impl NonidealAxis {
         let speed = DriveSpeed::new(axis, encoder, period.mechanics_s, seed, index);
         Self {
             commands: CommandQueue::resting(
-                axis.loop_delays().command_periods(period.servo_s),
+                axis_model.parameters.command_periods(period.servo_s),
                 angle_rad,
             ),
             // What it sees of the speed is simulated as it is.
-            drive: DriveModel::new(
-                axis_model,
-                DriveParameters {
-                    speed_window_s: 0.0,
-                    ..axis.drive()
-                },
-            ),
+            drive: DriveModel::new(&axis_model.with(|axis| axis.speed_window_s = 0.0)),
             drive_state: DriveState::default(),
             delay: Delay::new(axis, period, seed),
             torque_step_nm: torque_step_nm(axis),
@@ -73,7 +67,7 @@ impl NonidealAxis {
             latency,
             speed,
             motor: MotorTorque::new(axis),
-            mechanics: MechanicsModel::new(axis_model, axis.friction(), axis.transmission()),
+            mechanics: MechanicsModel::new(axis_model),
             broadband: broadband(axis, period.mechanics_s, seed, index),
             wander: Wander::new(axis, period.servo_s, period.mechanics_s, seed, index),
             scale_on_table: axis
@@ -89,9 +83,6 @@ impl NonidealAxis {
             axis.encoder_step_um,
             axis.encoder_noise_um,
             axis.interpolation_error_um,
-            axis.measurement_delay_s,
-            axis.command_delay_s,
-            axis.drive_delay_s,
             axis.jitter_s,
             axis.cogging_nm,
             axis.ripple,
@@ -103,8 +94,9 @@ impl NonidealAxis {
             && !axis.speed_held
             && axis.torque_bits.is_none()
             && axis.transmission.is_none()
-            && axis.drive() == DriveParameters::default()
-            && axis.friction() == FrictionParameters::default()
+            && [Part::Drive, Part::Delays, Part::Friction]
+                .iter()
+                .all(|part| !axis.parameters().has(*part))
     }
 
     /// The axis goes on as another one: where its parts are and how fast, its commands, what its

@@ -2,12 +2,18 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{AxisKnowledge, LoopDelays, Parameters, Periods};
+use feedwright_control::{Parameters, Periods};
 
-/// Returns an axis with the numbers of the machine of Lee, Cho and Jeon (2005), in a servo period
-/// of 1 ms.
-pub(crate) fn axis() -> AxisKnowledge {
-    let parameters = Parameters {
+/// Periods of the tests' machines.
+pub(crate) const PERIODS: Periods = Periods {
+    servo_s: 0.001,
+    mechanics_s: 0.0001,
+    mechanics_per_servo: 10,
+};
+
+/// Returns an axis with the numbers of the machine of Lee, Cho and Jeon (2005).
+pub(crate) fn axis() -> Parameters {
+    Parameters {
         rad_per_mm: TAU / 10.0,
         kp_1_s: 50.0,
         kd: 0.0,
@@ -17,21 +23,8 @@ pub(crate) fn axis() -> AxisKnowledge {
         viscous_friction_nm_s: 0.0336,
         coulomb_friction_nm: 0.2,
         coulomb_smoothing_rad_s: 0.05,
-    };
-    let periods = Periods {
-        servo_s: 0.001,
-        mechanics_s: 0.0001,
-        mechanics_per_servo: 10,
-    };
-    let delays = LoopDelays {
-        command_s: 0.0,
-        drive_s: 0.001,
-        measurement_s: 0.0005,
-    };
-    AxisKnowledge {
-        parameters,
-        periods,
-        delays,
-        ..AxisKnowledge::NOTHING
+        drive_delay_s: 0.001,
+        measurement_delay_s: 0.0005,
+        ..Parameters::NOTHING
     }
 }

@@ -8,7 +8,7 @@ use feedwright_servo::machine::Refused;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkFault, LinkInputs, LinkOutputs, Servo};
 
-use crate::axis::axis;
+use crate::axis::{PERIODS, axis};
 use crate::common::{SERVO_S, cutting};
 
 /// Servo periods until the link has settled, and servo periods of a turn.
@@ -19,10 +19,10 @@ pub(crate) const TURN: usize = 1257;
 /// more inertia and Coulomb friction.
 pub(crate) fn machine() -> IdentifiedAxes<2> {
     let (axis, mut slower) = (axis(), axis());
-    slower.parameters.inertia_kg_m2 = 0.012;
-    slower.parameters.coulomb_friction_nm = 0.3;
+    slower.inertia_kg_m2 = 0.012;
+    slower.coulomb_friction_nm = 0.3;
     IdentifiedAxes {
-        mechanics_s: axis.periods.mechanics_s,
+        periods: PERIODS,
         axes: [axis, slower],
     }
 }

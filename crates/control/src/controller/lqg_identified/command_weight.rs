@@ -23,10 +23,8 @@
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 9.2, for a
 //! weight on the rate of the input; the weight on the difference from an ideal command is our own.
 
-use crate::axis::AxisModel;
-use crate::axis::drive::DriveParameters;
-use crate::axis::knowledge::AxisKnowledge;
-use crate::axis::mechanics::MechanicsModel;
+use crate::axis::numbers::Part;
+use crate::axis::{AxisModel, Parameters};
 
 use super::linear::{LinearAxis, STATES};
 use super::riccati::{PeriodCost, StateMatrix, inner, regulator};
@@ -54,11 +52,11 @@ pub(super) struct CommandModel {
 }
 
 impl CommandModel {
-    /// Creates the coefficients of an axis with this drive.
-    pub(super) fn new(axis_model: &AxisModel, drive: &DriveParameters) -> Self {
+    /// Creates the coefficients of an axis.
+    pub(super) fn new(axis_model: &AxisModel) -> Self {
         let (parameters, servo_s) = (axis_model.parameters, axis_model.periods.servo_s);
-        let by_speed = (drive.velocity_feedforward + parameters.kd) / servo_s;
-        let by_change = drive.acceleration_feedforward * parameters.inertia_kg_m2
+        let by_speed = (parameters.velocity_feedforward + parameters.kd) / servo_s;
+        let by_change = parameters.acceleration_feedforward * parameters.inertia_kg_m2
             / (parameters.kv_nm_s_per_rad * servo_s * servo_s);
         Self {
             of_commands: [
@@ -187,13 +185,14 @@ fn priced(
 
 /// Returns the smallest difference of the inertia, as a part of it, at which the loop of these
 /// gains has no real pole left of [`LEFTMOST_POLE`].
-pub(super) fn least_inertia(known: &AxisKnowledge, gains: &[f64; REGULATED]) -> f64 {
+pub(super) fn least_inertia(known: &AxisModel, gains: &[f64; REGULATED]) -> f64 {
     let holds = |part: &f64| {
-        let mut lighter = *known;
-        lighter.parameters.inertia_kg_m2 *= 1.0 + part;
-        lighter.drive.acceleration_feedforward /= 1.0 + part;
+        let lighter = known.with(|axis| {
+            axis.inertia_kg_m2 *= 1.0 + part;
+            axis.acceleration_feedforward /= 1.0 + part;
+        });
         let axis = regulated_axis(&lighter);
-        let axis_model = CommandModel::new(&lighter.axis_model(), &lighter.drive);
+        let axis_model = CommandModel::new(&lighter);
         let (states, input, _) = axis.sampled();
         let (states, input, k0, row) = commanded(&states, &input, &axis_model);
         let by_offset: [f64; REGULATED] = core::array::from_fn(|i| (gains[i] + row[i]) / k0);
@@ -214,26 +213,14 @@ pub(super) fn least_inertia(known: &AxisKnowledge, gains: &[f64; REGULATED]) -> 
 
 /// Returns the axis that is regulated: without the integral of its speed loop and its torque
 /// filter.
-pub(super) fn regulated_axis(known: &AxisKnowledge) -> LinearAxis {
-    let AxisKnowledge {
-        drive,
-        friction,
-        transmission,
-        statistics,
-        ..
-    } = known;
-    let axis_model = known.axis_model();
-    let mechanics = MechanicsModel::new(&axis_model, *friction, *transmission);
-    let without_integral = DriveParameters {
-        speed_window_s: drive.speed_window_s,
-        ..DriveParameters::default()
-    };
-    LinearAxis::new(
-        &axis_model,
-        &without_integral,
-        mechanics.transmission(),
-        statistics,
-    )
+pub(super) fn regulated_axis(axis_model: &AxisModel) -> LinearAxis {
+    LinearAxis::new(&axis_model.with(|axis| {
+        let speed_window_s = axis.speed_window_s;
+        *axis = Parameters {
+            speed_window_s,
+            ..axis.without(&[Part::Drive])
+        };
+    }))
 }
 
 /// Returns states and input of the axis with o as its input, K0, and v - v_r by each state.
@@ -302,44 +289,40 @@ fn determinant(mut a: StateMatrix<REGULATED>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::{Parameters, Periods};
+    use crate::axis::Periods;
 
     /// 1 kHz, 50 1/s, a speed loop of 2 ms.
-    fn known(drive: DriveParameters) -> AxisKnowledge {
-        AxisKnowledge {
-            parameters: Parameters {
-                rad_per_mm: 0.6,
-                kp_1_s: 50.0,
-                kd: 0.02,
-                kv_nm_s_per_rad: 5.0,
-                torque_limit_nm: 30.0,
-                inertia_kg_m2: 0.01,
-                viscous_friction_nm_s: 0.0,
-                coulomb_friction_nm: 0.2,
-                coulomb_smoothing_rad_s: 0.5,
-            },
-            periods: Periods {
-                servo_s: 1e-3,
-                mechanics_s: 1e-4,
-                mechanics_per_servo: 10,
-            },
-            drive,
-            ..AxisKnowledge::NOTHING
-        }
+    fn known(velocity_feedforward: f64, acceleration_feedforward: f64) -> AxisModel {
+        let parameters = Parameters {
+            rad_per_mm: 0.6,
+            kp_1_s: 50.0,
+            kd: 0.02,
+            kv_nm_s_per_rad: 5.0,
+            torque_limit_nm: 30.0,
+            inertia_kg_m2: 0.01,
+            viscous_friction_nm_s: 0.0,
+            coulomb_friction_nm: 0.2,
+            coulomb_smoothing_rad_s: 0.5,
+            velocity_feedforward,
+            acceleration_feedforward,
+            ..Parameters::NOTHING
+        };
+        let periods = Periods {
+            servo_s: 1e-3,
+            mechanics_s: 1e-4,
+            mechanics_per_servo: 10,
+        };
+        AxisModel::new(parameters, periods)
     }
 
-    fn with_feedforward() -> AxisKnowledge {
-        known(DriveParameters {
-            velocity_feedforward: 0.7,
-            acceleration_feedforward: 0.4,
-            ..DriveParameters::default()
-        })
+    fn with_feedforward() -> AxisModel {
+        known(0.7, 0.4)
     }
 
     /// Sums of the squares of the second difference of o and of the angle, while noise is measured.
-    fn answers(known: &AxisKnowledge, q: f64) -> [f64; 2] {
+    fn answers(known: &AxisModel, q: f64) -> [f64; 2] {
         let axis = regulated_axis(known);
-        let axis_model = CommandModel::new(&known.axis_model(), &known.drive);
+        let axis_model = CommandModel::new(known);
         let gains = gains(&axis, &axis_model)([1e-8, q]);
         let (states, input, _) = axis.sampled();
         let (states, input, k0, row) = commanded(&states, &input, &axis_model);
@@ -362,7 +345,7 @@ mod tests {
 
     #[test]
     fn a_weight_makes_the_command_quiet_under_noise() {
-        for known in [known(DriveParameters::default()), with_feedforward()] {
+        for known in [known(0.0, 0.0), with_feedforward()] {
             let [[loud, before], [quiet, after]] = [0.0, 0.0625].map(|q| answers(&known, q));
             assert!(
                 quiet < 0.5 * loud && after < before,
@@ -375,7 +358,7 @@ mod tests {
     fn without_a_weight_the_gains_are_those_of_the_axis_alone() {
         let known = with_feedforward();
         let axis = regulated_axis(&known);
-        let axis_model = CommandModel::new(&known.axis_model(), &known.drive);
+        let axis_model = CommandModel::new(&known);
         let [none, tiny] = [0.0, 1e-14].map(|q| gains(&axis, &axis_model)([1e-8, q]));
         for (none, tiny) in none.iter().zip(tiny) {
             assert!(
@@ -388,10 +371,7 @@ mod tests {
     #[test]
     fn a_command_that_was_not_decided_on_counts_as_ideal() {
         let known = with_feedforward();
-        let (axis_model, mut history) = (
-            CommandModel::new(&known.axis_model(), &known.drive),
-            CommandHistory::IDEAL,
-        );
+        let (axis_model, mut history) = (CommandModel::new(&known), CommandHistory::IDEAL);
         let mut send = |sent_rad: f64| {
             history.decide(
                 &axis_model,
@@ -414,7 +394,7 @@ mod tests {
     fn no_model_is_learned_so_light_that_its_loop_alternates() {
         let known = with_feedforward();
         let axis = regulated_axis(&known);
-        let axis_model = CommandModel::new(&known.axis_model(), &known.drive);
+        let axis_model = CommandModel::new(&known);
         let gains = gains(&axis, &axis_model)([1e-8, 0.0625]);
         let least = least_inertia(&known, &gains);
         assert!((-0.7..0.0).contains(&least), "{least}");

@@ -1,6 +1,6 @@
 //! Settings of the controller.
 
-use crate::axis::transmission::TransmissionParameters;
+use crate::axis::Parameters;
 use crate::controller::OffsetBounds;
 use crate::controller::row::Parameter;
 
@@ -63,10 +63,10 @@ impl LqgSettings {
         }
     }
 
-    /// Returns the control weight near the reference, for an axis with this screw.
-    pub(super) fn lowest_control_weight_s2(&self, screw: &TransmissionParameters) -> f64 {
-        if self.learns && screw.resonance_rad_s > 0.0 {
-            let slow_s = SCREW_RAD / screw.resonance_rad_s;
+    /// Returns the control weight near the reference, for an axis with its screw.
+    pub(super) fn lowest_control_weight_s2(&self, axis: &Parameters) -> f64 {
+        if self.learns && axis.resonance_rad_s > 0.0 {
+            let slow_s = SCREW_RAD / axis.resonance_rad_s;
             self.control_weight_s2.max(slow_s * slow_s)
         } else {
             self.control_weight_s2

@@ -13,10 +13,8 @@
 //! the constant gain of the linear part.
 
 use crate::axis::drive::{DriveModel, DriveReference, DriveState};
-use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::{MechanicsModel, MechanicsState};
-use crate::axis::statistics::AxisStatistics;
-use crate::axis::{self, AxisModel};
+use crate::axis::{self, AxisModel, Parameters};
 use crate::sine::sin;
 use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 use crate::supervisor::outliers::{self, Outliers};
@@ -43,7 +41,6 @@ pub(super) struct FilterModel {
     pub(super) axis_model: AxisModel,
     pub(super) drive: DriveModel,
     pub(super) mechanics: MechanicsModel,
-    statistics: AxisStatistics,
     pub(super) linear: LinearAxis,
     gains: GainTable,
     /// Mean square error of a free run by white innovations of unit variance, for each level of the
@@ -150,13 +147,15 @@ pub(super) type Sent = [DriveReference; KEPT_PERIODS];
 
 /// Returns the mechanics periods by which a measurement and a drive are late.
 fn late(
-    AxisKnowledge {
-        delays, periods, ..
-    }: &AxisKnowledge,
+    AxisModel {
+        parameters,
+        periods,
+        ..
+    }: &AxisModel,
 ) -> [u32; 2] {
     let longest = (KEPT_PERIODS as u32 - 2) / 2 * periods.mechanics_per_servo;
     // The cast saturates to zero where the float is NaN.
-    [delays.measurement_s, delays.drive_s]
+    [parameters.measurement_delay_s, parameters.drive_delay_s]
         .map(|s| (libm::round(s / periods.mechanics_s) as u32).min(longest))
 }
 
@@ -177,42 +176,37 @@ fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -
 
 impl FilterModel {
     /// Creates the model of an axis. If it `learns`, it also has gains for other statistics.
-    pub(super) fn new(known: &AxisKnowledge, learns: bool) -> Self {
-        let AxisKnowledge {
-            drive,
-            friction,
-            transmission,
-            statistics,
+    pub(super) fn new(axis_model: AxisModel, learns: bool) -> Self {
+        let AxisModel {
+            parameters,
+            periods,
             ..
-        } = *known;
-        let axis_model = known.axis_model();
-        let mechanics = MechanicsModel::new(&axis_model, friction, transmission);
-        let linear = LinearAxis::new(&axis_model, &drive, mechanics.transmission(), &statistics);
+        } = &axis_model;
+        let linear = LinearAxis::new(&axis_model);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
         let gains = |variance_rad2: f64| filter(&states, &noise, &measured, variance_rad2);
-        let measured_rad2 = measured_rad2(&statistics);
+        let measured_rad2 = measured_rad2(parameters);
         let gains = if learns {
             GainTable::new(measured_rad2, gains)
         } else {
             GainTable::constant(gains(measured_rad2))
         };
         Self {
-            axis_model,
-            drive: DriveModel::new(&axis_model, drive),
-            mechanics,
-            statistics,
+            drive: DriveModel::new(&axis_model),
+            mechanics: MechanicsModel::new(&axis_model),
             linear,
             amplified: gains
                 .levels()
-                .map(|gains| amplified(&states, gains, axis_model.periods.servo_s)),
+                .map(|gains| amplified(&states, gains, periods.servo_s)),
             gains,
             measured_rad2,
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
             believed_rad: outliers::believed_rad(&axis_model, measured_rad2),
-            command_periods: known.delays.command_periods(axis_model.periods.servo_s),
-            late: late(known),
+            command_periods: parameters.command_periods(periods.servo_s),
+            late: late(&axis_model),
+            axis_model,
         }
     }
 
@@ -243,12 +237,12 @@ impl FilterModel {
 
     /// Returns the cogging torque of the motor at an angle, N m.
     pub(super) fn cogging_nm(&self, angle_rad: f64) -> f64 {
-        let AxisStatistics {
+        let Parameters {
             cogging_nm,
             cogging_per_rev,
             cogging_phase_rad,
             ..
-        } = self.statistics;
+        } = self.axis_model.parameters;
         cogging_nm * sin(cogging_per_rev * angle_rad + cogging_phase_rad)
     }
 
@@ -262,7 +256,8 @@ impl FilterModel {
     /// Returns the mean square error of a free run of `periods` servo periods by noise, unforeseen
     /// loads and the encoder, rad^2.
     pub(super) fn unforeseen_rad2(&self, periods: u32) -> f64 {
-        self.linear.spread_rad2(&self.statistics, periods) + measured_rad2(&self.statistics)
+        let parameters = &self.axis_model.parameters;
+        self.linear.spread_rad2(parameters, periods) + measured_rad2(parameters)
     }
 
     /// Returns the mean square error of a free run by these innovations, if they are white, rad^2.
@@ -277,12 +272,12 @@ impl FilterModel {
 
     /// Returns the angle that the encoder shows, rad.
     pub(super) fn shown_rad(&self, estimate: &Estimate) -> f64 {
-        let AxisStatistics {
+        let Parameters {
             interpolation_rad,
             interpolation_phase_rad,
             signal_per_rad,
             ..
-        } = self.statistics;
+        } = self.axis_model.parameters;
         let angle_rad = estimate.masses.motor.angle_rad;
         angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad)
     }
@@ -360,12 +355,12 @@ impl FilterModel {
         )
     }
 
-    /// Changes to this knowledge of the axis. Its filter stays.
-    pub(super) fn follow(&mut self, known: &AxisKnowledge) {
-        self.axis_model = known.axis_model();
-        self.drive = DriveModel::new(&self.axis_model, known.drive);
-        self.mechanics = MechanicsModel::new(&self.axis_model, known.friction, known.transmission);
-        self.late = late(known);
+    /// Changes to this model of the axis. Its filter stays.
+    pub(super) fn follow(&mut self, axis_model: AxisModel) {
+        self.drive = DriveModel::new(&axis_model);
+        self.mechanics = MechanicsModel::new(&axis_model);
+        self.late = late(&axis_model);
+        self.axis_model = axis_model;
     }
 
     /// Returns the estimate at the time at which a reference that is sent now begins to act.

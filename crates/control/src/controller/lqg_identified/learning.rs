@@ -40,8 +40,8 @@
 //! Control 14(4), for the two filters; Kulhavy (1987), Restricted exponential forgetting in
 //! real-time identification, Automatica 23(5).
 
+use crate::axis::AxisModel;
 use crate::axis::drive::DriveReference;
-use crate::axis::knowledge::AxisKnowledge;
 use crate::supervisor::DEVIATIONS;
 use crate::supervisor::model_choice::{ModelChange, ModelChoice};
 use crate::supervisor::one_step::{LEAST_MM2, run_periods};
@@ -88,7 +88,7 @@ const SLOWEST_MM_S: f64 = 1.0;
 pub(super) type Differences = [f64; DIFFERENCES];
 
 /// Returns the axis with these differences.
-pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKnowledge {
+pub(super) fn with(nominal: &AxisModel, differences: &Differences) -> AxisModel {
     let [
         position_gain,
         velocity,
@@ -98,30 +98,30 @@ pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKn
         _,
         acceleration,
     ] = *differences;
-    let mut known = *nominal;
     let servo_s = nominal.periods.servo_s;
-    known.parameters.kp_1_s *= 1.0 + position_gain;
-    known.drive.velocity_feedforward = (known.drive.velocity_feedforward + velocity).max(0.0);
-    known.delays.drive_s = (known.delays.drive_s + delay * servo_s).max(0.0);
-    known.parameters.inertia_kg_m2 *= 1.0 + inertia;
-    // The torque that the drive adds does not follow another inertia.
-    let of_nominal = (known.drive.acceleration_feedforward + acceleration).max(0.0);
-    known.drive.acceleration_feedforward = of_nominal / (1.0 + inertia);
-    for friction_nm in [
-        &mut known.parameters.viscous_friction_nm_s,
-        &mut known.parameters.coulomb_friction_nm,
-        &mut known.friction.coulomb_asymmetry_nm,
-        &mut known.friction.stribeck_nm,
-    ] {
-        *friction_nm *= 1.0 + friction;
-    }
-    known
+    nominal.with(|axis| {
+        axis.kp_1_s *= 1.0 + position_gain;
+        axis.velocity_feedforward = (axis.velocity_feedforward + velocity).max(0.0);
+        axis.drive_delay_s = (axis.drive_delay_s + delay * servo_s).max(0.0);
+        axis.inertia_kg_m2 *= 1.0 + inertia;
+        // The torque that the drive adds does not follow another inertia.
+        let of_nominal = (axis.acceleration_feedforward + acceleration).max(0.0);
+        axis.acceleration_feedforward = of_nominal / (1.0 + inertia);
+        for friction_nm in [
+            &mut axis.viscous_friction_nm_s,
+            &mut axis.coulomb_friction_nm,
+            &mut axis.coulomb_asymmetry_nm,
+            &mut axis.stribeck_nm,
+        ] {
+            *friction_nm *= 1.0 + friction;
+        }
+    })
 }
 
 /// Constant part of the learning of an axis.
 #[derive(Debug, Clone)]
 pub(super) struct Learner {
-    nominal: AxisKnowledge,
+    nominal: AxisModel,
     states: StateMatrix<STATES>,
     inputs: PeriodInputs,
     priors: Differences,
@@ -154,10 +154,10 @@ pub(super) struct Learning {
 impl Learner {
     /// Creates the learner of an axis from its model.
     /// `least_inertia` is the least difference of the inertia that may be learned.
-    pub(super) fn new(nominal: AxisKnowledge, linear: &LinearAxis, least_inertia: f64) -> Self {
+    pub(super) fn new(nominal: AxisModel, linear: &LinearAxis, least_inertia: f64) -> Self {
         let (states, ..) = linear.sampled();
         let mut priors = PRIORS;
-        if nominal.drive.acceleration_feedforward == 0.0 {
+        if nominal.parameters.acceleration_feedforward == 0.0 {
             priors[6] = 0.0;
         }
         priors[LOAD] = nominal
@@ -168,15 +168,15 @@ impl Learner {
         let [_, velocity, delay, inertia, .., acceleration] = &mut bounds;
         inertia[0] = inertia[0].max(least_inertia);
         // Neither a feedforward nor a delay can be negative.
-        velocity[0] = -nominal.drive.velocity_feedforward;
-        delay[0] = -nominal.delays.drive_s / nominal.periods.servo_s;
-        acceleration[0] = -nominal.drive.acceleration_feedforward;
+        velocity[0] = -nominal.parameters.velocity_feedforward;
+        delay[0] = -nominal.parameters.drive_delay_s / nominal.periods.servo_s;
+        acceleration[0] = -nominal.parameters.acceleration_feedforward;
         let rad_per_mm = nominal.parameters.rad_per_mm;
         let least_rad2 = LEAST_MM2 * rad_per_mm * rad_per_mm;
         let loads_rad2 =
-            linear.spread_rad2(&nominal.statistics, run_periods(nominal.periods.servo_s));
+            linear.spread_rad2(&nominal.parameters, run_periods(nominal.periods.servo_s));
         let noise_rad2 =
-            least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics);
+            least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.parameters);
         Self {
             nominal,
             states,
@@ -438,12 +438,12 @@ impl Learner {
     }
 
     /// Returns the axis without any difference.
-    pub(super) fn nominal(&self) -> AxisKnowledge {
+    pub(super) fn nominal(&self) -> AxisModel {
         self.nominal
     }
 
     /// Returns the axis with the applied differences.
-    pub(super) fn known(&self, learning: &Learning) -> AxisKnowledge {
+    pub(super) fn known(&self, learning: &Learning) -> AxisModel {
         with(&self.nominal, &learning.applied)
     }
 }
@@ -479,23 +479,36 @@ fn dot(a: &Differences, b: &Differences) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::axis::{Parameters, Periods};
 
     #[test]
     fn differences_make_an_axis_that_a_machine_can_have() {
-        let mut nominal = AxisKnowledge::NOTHING;
-        nominal.parameters.inertia_kg_m2 = 0.01;
-        nominal.parameters.kp_1_s = 50.0;
-        nominal.parameters.coulomb_friction_nm = 0.2;
-        nominal.drive.acceleration_feedforward = 0.8;
+        let parameters = Parameters {
+            inertia_kg_m2: 0.01,
+            kp_1_s: 50.0,
+            coulomb_friction_nm: 0.2,
+            coulomb_smoothing_rad_s: 0.5,
+            acceleration_feedforward: 0.8,
+            ..Parameters::NOTHING
+        };
+        let periods = Periods {
+            servo_s: 0.001,
+            mechanics_s: 0.001,
+            mechanics_per_servo: 1,
+        };
+        let nominal = AxisModel::new(parameters, periods);
         let axis = with(&nominal, &[0.1, -0.2, -1.0, 0.6, 0.5, 0.3, 0.0]);
         assert!((axis.parameters.kp_1_s - 55.0).abs() < 1e-12);
         assert_eq!(
-            (axis.drive.velocity_feedforward, axis.delays.drive_s),
+            (
+                axis.parameters.velocity_feedforward,
+                axis.parameters.drive_delay_s
+            ),
             (0.0, 0.0)
         );
         assert!((axis.parameters.coulomb_friction_nm - 0.3).abs() < 1e-12);
-        let added = |axis: &AxisKnowledge| {
-            axis.drive.acceleration_feedforward * axis.parameters.inertia_kg_m2
+        let added = |axis: &AxisModel| {
+            axis.parameters.acceleration_feedforward * axis.parameters.inertia_kg_m2
         };
         assert!(
             (added(&axis) - added(&nominal)).abs() < 1e-12,

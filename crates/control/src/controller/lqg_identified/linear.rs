@@ -20,10 +20,8 @@
 //! noise; sampling as in Franklin, Powell and Workman (1998), section 4.3, here by the same steps
 //! as in the plant.
 
-use crate::axis::AxisModel;
-use crate::axis::drive::DriveParameters;
-use crate::axis::statistics::AxisStatistics;
 use crate::axis::transmission::TransmissionModel;
+use crate::axis::{AxisModel, Parameters};
 
 use super::riccati::{PeriodCost, StateMatrix, applied, inner, product, sum, transposed};
 
@@ -77,21 +75,17 @@ pub(super) struct PeriodInputs {
 
 impl LinearAxis {
     /// Creates the linear model of an axis with its drive, its screw and its loads.
-    pub(super) fn new(
-        axis_model: &AxisModel,
-        drive: &DriveParameters,
-        screw: Option<&TransmissionModel>,
-        statistics: &AxisStatistics,
-    ) -> Self {
-        let (parameters, dt_s) = (axis_model.parameters, axis_model.periods.mechanics_s);
+    pub(super) fn new(axis_model: &AxisModel) -> Self {
+        let (parameters, dt_s) = (&axis_model.parameters, axis_model.periods.mechanics_s);
+        let screw = TransmissionModel::new(axis_model);
         let kv = parameters.kv_nm_s_per_rad;
-        let integral = if drive.speed_integral_s > 0.0 {
-            kv * dt_s / drive.speed_integral_s
+        let integral = if parameters.speed_integral_s > 0.0 {
+            kv * dt_s / parameters.speed_integral_s
         } else {
             0.0
         };
-        let filter = dt_s / (dt_s + drive.filter_lag_s(dt_s));
-        let late_nm_s2 = kv * drive.speed_late_s(dt_s);
+        let filter = dt_s / (dt_s + parameters.filter_lag_s(dt_s));
+        let late_nm_s2 = kv * parameters.speed_late_s(dt_s);
         let part_left =
             |inverse_inertia: f64| (1.0 - late_nm_s2 * inverse_inertia).max(LEAST_INERTIA);
         let inertia_kg_m2 = parameters.inertia_kg_m2 * part_left(1.0 / parameters.inertia_kg_m2);
@@ -120,10 +114,10 @@ impl LinearAxis {
                     [[x + dt_s * w, w]; 2]
                 }
             };
-            let (sin, cos) = libm::sincos(statistics.disturbance_rad_s * dt_s);
-            let keep = libm::exp(-dt_s / memory_s(statistics));
-            let forget = if statistics.torque_noise_s > 0.0 {
-                libm::exp(-dt_s / statistics.torque_noise_s)
+            let (sin, cos) = libm::sincos(parameters.disturbance_rad_s * dt_s);
+            let keep = libm::exp(-dt_s / memory_s(parameters));
+            let forget = if parameters.torque_noise_s > 0.0 {
+                libm::exp(-dt_s / parameters.torque_noise_s)
             } else {
                 0.0
             };
@@ -145,7 +139,7 @@ impl LinearAxis {
             substep: transposed(&columns),
             substep_input: after([0.0; STATES], [1.0, 0.0]),
             substep_torque: after([0.0; STATES], [0.0, 1.0]),
-            substep_noise: noise(axis_model, statistics),
+            substep_noise: noise(axis_model),
             substeps: axis_model.periods.mechanics_per_servo,
         }
     }
@@ -189,10 +183,10 @@ impl LinearAxis {
 
     /// Returns the variance of the motor's angle after `periods` servo periods, rad^2. Only the
     /// state at their start is known, not the loads and the noise.
-    pub(super) fn spread_rad2(&self, statistics: &AxisStatistics, periods: u32) -> f64 {
+    pub(super) fn spread_rad2(&self, axis: &Parameters, periods: u32) -> f64 {
         let (states, _, noise) = self.sampled();
-        let swing_nm2 = 0.5 * statistics.disturbance_nm * statistics.disturbance_nm;
-        let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm;
+        let swing_nm2 = 0.5 * axis.disturbance_nm * axis.disturbance_nm;
+        let broadband_nm2 = axis.torque_noise_nm * axis.torque_noise_nm;
         let mut covariance = [[0.0; STATES]; STATES];
         for (state, nm2) in [
             (BROADBAND, broadband_nm2),
@@ -247,9 +241,9 @@ impl LinearAxis {
 }
 
 /// Returns the variance of the measurement, rad^2.
-pub(super) fn measured_rad2(statistics: &AxisStatistics) -> f64 {
-    let step_rad2 = statistics.encoder_step_rad * statistics.encoder_step_rad / 12.0;
-    (statistics.encoder_noise_rad * statistics.encoder_noise_rad + step_rad2)
+pub(super) fn measured_rad2(axis: &Parameters) -> f64 {
+    let step_rad2 = axis.encoder_step_rad * axis.encoder_step_rad / 12.0;
+    (axis.encoder_noise_rad * axis.encoder_noise_rad + step_rad2)
         .max(LEAST_NOISE_RAD * LEAST_NOISE_RAD)
 }
 
@@ -272,8 +266,8 @@ fn unit(j: usize) -> [f64; STATES] {
 }
 
 /// Returns the time for which the disturbance keeps its phase, s.
-fn memory_s(statistics: &AxisStatistics) -> f64 {
-    let wander_rad_s = statistics.disturbance_wander * statistics.disturbance_rad_s;
+fn memory_s(axis: &Parameters) -> f64 {
+    let wander_rad_s = axis.disturbance_wander * axis.disturbance_rad_s;
     if wander_rad_s > 0.0 {
         (1.0 / wander_rad_s).min(LONGEST_MEMORY_S)
     } else {
@@ -282,8 +276,8 @@ fn memory_s(statistics: &AxisStatistics) -> f64 {
 }
 
 /// Returns the covariance of the noise in a mechanics period.
-fn noise(axis_model: &AxisModel, statistics: &AxisStatistics) -> StateMatrix<STATES> {
-    let dt_s = axis_model.periods.mechanics_s;
+fn noise(axis_model: &AxisModel) -> StateMatrix<STATES> {
+    let (axis, dt_s) = (&axis_model.parameters, axis_model.periods.mechanics_s);
     let fresh = |time_s: f64| {
         if time_s > 0.0 {
             1.0 - libm::exp(-2.0 * dt_s / time_s)
@@ -291,11 +285,10 @@ fn noise(axis_model: &AxisModel, statistics: &AxisStatistics) -> StateMatrix<STA
             1.0
         }
     };
-    let broadband_nm2 =
-        statistics.torque_noise_nm * statistics.torque_noise_nm * fresh(statistics.torque_noise_s);
-    let amplitude_nm = statistics.disturbance_nm;
-    let swing_nm2 = 0.5 * amplitude_nm * amplitude_nm * fresh(memory_s(statistics));
-    let drift_nm = DRIFT_SHARE * (axis_model.parameters.coulomb_friction_nm + amplitude_nm);
+    let broadband_nm2 = axis.torque_noise_nm * axis.torque_noise_nm * fresh(axis.torque_noise_s);
+    let amplitude_nm = axis.disturbance_nm;
+    let swing_nm2 = 0.5 * amplitude_nm * amplitude_nm * fresh(memory_s(axis));
+    let drift_nm = DRIFT_SHARE * (axis.coulomb_friction_nm + amplitude_nm);
     let drift_nm2 = drift_nm * drift_nm * dt_s;
     let variances = [
         0.0,

@@ -4,7 +4,6 @@
 use crate::axis::delays::CommandQueue;
 use crate::axis::drive::{DriveReference, DriveState};
 use crate::axis::inverse::AxisInverse;
-use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisModel, AxisState, Parameters};
 use crate::supervisor::load;
@@ -39,12 +38,10 @@ pub(super) struct AxisLqg {
     regulator: WeightedGains,
     command_model: CommandModel,
     bounds: OffsetBounds,
-    known: AxisKnowledge,
     /// Learner of the model errors; `None` if the model is exact.
     learner: Option<Learner>,
     /// The model in parallel: the learned one until it is followed, the nominal one after that.
     other: FilterModel,
-    other_known: AxisKnowledge,
     may_learn: bool,
     state: Option<Running>,
 }
@@ -216,54 +213,40 @@ impl ModelRun {
 }
 
 impl AxisLqg {
-    /// Creates an axis from this knowledge.
-    pub(super) fn new(known: AxisKnowledge, settings: LqgSettings) -> Self {
-        let AxisKnowledge {
-            drive,
-            friction,
-            transmission,
-            delays,
-            ..
-        } = known;
-        let axis_model = known.axis_model();
-        let model = FilterModel::new(&known, settings.learns);
-        let regulated = command_weight::regulated_axis(&known);
-        let command_model = CommandModel::new(&axis_model, &drive);
+    /// Creates an axis from its model.
+    pub(super) fn new(axis_model: AxisModel, settings: LqgSettings) -> Self {
+        let model = FilterModel::new(axis_model, settings.learns);
+        let regulated = command_weight::regulated_axis(&axis_model);
+        let command_model = CommandModel::new(&axis_model);
         let lowest = [
-            settings.lowest_control_weight_s2(&transmission),
+            settings.lowest_control_weight_s2(&axis_model.parameters),
             settings.command_weight,
         ];
         let regulator =
             WeightedGains::new(lowest, command_weight::gains(&regulated, &command_model));
-        let least_inertia = || command_weight::least_inertia(&known, &regulator.near());
+        let least_inertia = || command_weight::least_inertia(&axis_model, &regulator.near());
         Self {
-            inverse: AxisInverse::new(axis_model, drive, friction, delays),
+            inverse: AxisInverse::new(axis_model),
             twist: model
                 .mechanics
                 .transmission()
                 .map(|screw| ScrewTwist::new(&axis_model, screw)),
             bounds: settings.bounds,
-            known,
             learner: settings
                 .learns
-                .then(|| Learner::new(known, &model.linear, least_inertia())),
+                .then(|| Learner::new(axis_model, &model.linear, least_inertia())),
             regulator,
             command_model,
             other: model.clone(),
-            other_known: known,
             may_learn: true,
             state: None,
             model,
         }
     }
 
+    /// Returns the present model of the axis.
     pub(super) fn axis_model(&self) -> &AxisModel {
         &self.model.axis_model
-    }
-
-    /// Returns the present knowledge of the axis.
-    pub(super) fn known(&self) -> AxisKnowledge {
-        self.known
     }
 
     /// Returns true if the followed model was learned.
@@ -319,15 +302,9 @@ impl AxisLqg {
         (self.state, self.may_learn) = (None, true);
         let Some(learner) = &self.learner else { return };
         let nominal = learner.nominal();
-        (self.known, self.other_known) = (nominal, nominal);
-        self.model.follow(&nominal);
-        self.other.follow(&nominal);
-        self.inverse.follow(
-            self.model.axis_model,
-            nominal.drive,
-            nominal.friction,
-            nominal.delays,
-        );
+        self.model.follow(nominal);
+        self.other.follow(nominal);
+        self.inverse.follow(nominal);
     }
 
     /// Returns true before the first measurement.
@@ -337,7 +314,7 @@ impl AxisLqg {
 
     /// Returns the lag of the axis behind the command at constant speed without an offset, s.
     pub(super) fn lag_s(&self) -> f64 {
-        self.measured_lag_s() - self.known.delays.measurement_s
+        self.measured_lag_s() - self.model.axis_model.parameters.measurement_delay_s
     }
 
     /// Returns that lag for the measured position, s.
@@ -353,14 +330,13 @@ impl AxisLqg {
     /// Returns the lag of the measured position behind the command that the position loop has, at
     /// constant speed, s.
     fn position_loop_lag_s(&self) -> f64 {
-        let (parameters, AxisKnowledge { drive, .. }) =
-            (self.model.axis_model.parameters, self.known);
-        let friction = if drive.speed_integral_s > 0.0 {
+        let parameters = &self.model.axis_model.parameters;
+        let friction = if parameters.speed_integral_s > 0.0 {
             0.0
         } else {
             parameters.viscous_friction_nm_s / parameters.kv_nm_s_per_rad
         };
-        (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s
+        (1.0 + friction - parameters.velocity_feedforward) / parameters.kp_1_s
     }
 
     /// Takes in the position that followed from the command of the last servo period, an offset
@@ -453,10 +429,10 @@ impl AxisLqg {
         let beside_told = beside.go_on(&self.other, command_rad, measured_rad);
         let missed_rad = [&*real, &*beside].map(|run| run.trial.missed_rad());
         let followed = learning.is_followed();
-        let (run, model, known) = if followed {
-            (&mut *real, &mut self.model, &mut self.known)
+        let (run, model) = if followed {
+            (&mut *real, &mut self.model)
         } else {
-            (&mut *beside, &mut self.other, &mut self.other_known)
+            (&mut *beside, &mut self.other)
         };
         let (told, from_rad) = if followed {
             (told, from_rad)
@@ -471,30 +447,20 @@ impl AxisLqg {
             told,
         );
         if let Some(moved) = learner.apply(learning) {
-            *known = learner.known(learning);
-            model.follow(known);
+            model.follow(learner.known(learning));
             run.tracked.estimate.correct(moved);
         }
         let ModelChange { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
         if turns {
             core::mem::swap(&mut self.model, &mut self.other);
-            core::mem::swap(&mut self.known, &mut self.other_known);
             core::mem::swap(real, beside);
         }
         if begins_anew {
-            self.other_known = learner.nominal();
-            self.other.follow(&self.other_known);
+            self.other.follow(learner.nominal());
             *beside = *real;
         }
         if followed || turns {
-            let AxisKnowledge {
-                drive,
-                friction,
-                delays,
-                ..
-            } = self.known;
-            self.inverse
-                .follow(self.model.axis_model, drive, friction, delays);
+            self.inverse.follow(self.model.axis_model);
         }
         turns
     }
@@ -579,9 +545,10 @@ impl AxisLqg {
             rad_per_mm,
             ..
         } = self.model.axis_model.parameters;
-        let off_mm = open.measured_rad / rad_per_mm - at_mm(self.known.delays.measurement_s);
+        let off_mm = open.measured_rad / rad_per_mm
+            - at_mm(self.model.axis_model.parameters.measurement_delay_s);
         // The integral of a speed loop compensates constant loads.
-        let takes_up = self.known.drive.speed_integral_s > 0.0;
+        let takes_up = self.model.axis_model.parameters.speed_integral_s > 0.0;
         let by_loads_mm = if takes_up {
             0.0
         } else {
@@ -641,7 +608,7 @@ impl AxisLqg {
         let tracked = running.real.tracked.at_position_loop(&self.model);
         let ahead = self.model.ahead(&tracked.estimate, &tracked.sent);
         let inner = [ahead.drive.integral_nm(), ahead.masses.presliding_nm];
-        let acts_s = self.known.delays.drive_s;
+        let acts_s = self.model.axis_model.parameters.drive_delay_s;
         let twist = self
             .twist
             .map_or(TwistCourse::NONE, |twist| twist.course(&at_mm, acts_s));
@@ -764,8 +731,8 @@ impl AxisLqg {
             self.model.axis_model.periods,
         );
         let servo_s = periods.servo_s;
-        let [before_mm, there_mm, after_mm] =
-            [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
+        let [before_mm, there_mm, after_mm] = [-1.0, 0.0, 1.0]
+            .map(|n: f64| at_mm(self.model.axis_model.parameters.drive_delay_s + n * servo_s));
         // The speed of the model belongs to the mechanics period that has ended: it is half a
         // period old.
         let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
@@ -785,8 +752,10 @@ impl AxisLqg {
             self.model.axis_model.periods.servo_s,
         );
         let cogging_nm = |n: f64| {
-            self.model
-                .cogging_nm(at_mm(self.known.delays.drive_s + n * servo_s) * parameters.rad_per_mm)
+            self.model.cogging_nm(
+                at_mm(self.model.axis_model.parameters.drive_delay_s + n * servo_s)
+                    * parameters.rad_per_mm,
+            )
         };
         let mean_nm = (cogging_nm(0.0) + 4.0 * cogging_nm(0.5) + cogging_nm(1.0)) / 6.0;
         -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)

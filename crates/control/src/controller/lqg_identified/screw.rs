@@ -164,15 +164,17 @@ mod tests {
     extern crate std;
 
     use super::*;
-    use crate::axis::friction::FrictionParameters;
     use crate::axis::mechanics::{MechanicsModel, MechanicsState};
-    use crate::axis::transmission::TransmissionParameters;
     use crate::axis::{Parameters, Periods};
     use crate::controller::feedforward;
 
-    fn axis_model() -> AxisModel {
+    fn axis_model(backlash_rad: f64) -> AxisModel {
         let parameters = Parameters {
             torque_limit_nm: 30.0,
+            table_share: 0.5,
+            resonance_rad_s: 380.0,
+            damping_ratio: 0.02,
+            backlash_rad,
             ..feedforward::tests::axis(0.0, 0.2)
         };
         AxisModel::new(
@@ -185,15 +187,6 @@ mod tests {
         )
     }
 
-    fn screw(backlash_rad: f64) -> TransmissionParameters {
-        TransmissionParameters {
-            table_share: 0.5,
-            resonance_rad_s: 380.0,
-            damping_ratio: 0.02,
-            backlash_rad,
-        }
-    }
-
     /// A sine of 5 mm and 8 rad/s.
     fn reference_mm(time_s: f64) -> f64 {
         5.0 * libm::sin(8.0 * time_s)
@@ -202,8 +195,8 @@ mod tests {
     #[test]
     fn a_motor_that_is_held_where_it_is_said_to_be_has_its_table_on_the_reference() {
         for backlash_rad in [0.0, 0.003] {
-            let (axis_model, screw) = (axis_model(), screw(backlash_rad));
-            let mechanics = MechanicsModel::new(&axis_model, FrictionParameters::default(), screw);
+            let axis_model = axis_model(backlash_rad);
+            let mechanics = MechanicsModel::new(&axis_model);
             let twist = ScrewTwist::new(
                 &axis_model,
                 mechanics.transmission().expect("it is not rigid"),

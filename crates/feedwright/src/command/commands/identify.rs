@@ -8,7 +8,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name};
+use feedwright_control::{Parameters, Part};
+use feedwright_ident::{AxisEstimate, Model, identifier_name};
 use feedwright_sim::{Machine, is_machine_path, significant};
 use miette::Result;
 
@@ -91,7 +92,7 @@ fn print_axes(
         .map(TableColumn::new);
     let mut table = ConsoleTable::new(std::iter::once(TableColumn::new("")).chain(names).collect());
     let um_per_rad = |i: usize| machine.axes[i].lead_mm_per_rev * 1e3 / TAU;
-    type Value = fn(&AxisParameters, f64) -> f64;
+    type Value = fn(&Parameters, f64) -> f64;
     let rows: [(&str, Value); 9] = [
         ("inertia, kg m2", |p, _| p.inertia_kg_m2),
         ("viscous, N m s/rad", |p, _| p.viscous_friction_nm_s),
@@ -100,15 +101,13 @@ fn print_axes(
         ("presliding, um", |p, um_per_rad| {
             p.presliding_rad * um_per_rad
         }),
-        ("resonance, Hz", |p, _| p.transmission.resonance_rad_s / TAU),
-        ("its damping ratio", |p, _| p.transmission.damping_ratio),
-        ("share of the table", |p, _| p.transmission.table_share),
-        ("backlash, um", |p, um_per_rad| {
-            p.transmission.backlash_rad * um_per_rad
-        }),
+        ("resonance, Hz", |p, _| p.resonance_rad_s / TAU),
+        ("its damping ratio", |p, _| p.damping_ratio),
+        ("share of the table", |p, _| p.table_share),
+        ("backlash, um", |p, um_per_rad| p.backlash_rad * um_per_rad),
     ];
     let of_screw = |label: &str| rows[5..].iter().any(|(of_screw, _)| *of_screw == label);
-    let gives = found.iter().any(|axis| axis.parameters.has_screw());
+    let gives = found.iter().any(|axis| axis.parameters.has(Part::Screw));
     for (label, value) in rows
         .into_iter()
         .filter(|(label, _)| gives || !of_screw(label))

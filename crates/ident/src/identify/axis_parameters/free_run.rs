@@ -7,10 +7,10 @@
 //! no measurement noise does either.
 
 use feedwright_control::{
-    AxisModel, DriveModel, DriveReference, DriveState, LoopDelays, MechanicsModel, MechanicsState,
+    AxisModel, DriveModel, DriveReference, DriveState, MechanicsModel, MechanicsState, Parameters,
 };
 
-use super::{AxisParameters, DriveSettings};
+use super::with_identified;
 
 /// An axis that runs freely.
 pub(super) struct FreeRun {
@@ -22,20 +22,20 @@ pub(super) struct FreeRun {
 }
 
 impl FreeRun {
-    pub(super) fn new(settings: &DriveSettings, axis: &AxisParameters) -> Self {
-        let axis_model = AxisModel::new(axis.axis_model(settings), settings.periods);
-        let LoopDelays {
-            drive_s,
-            measurement_s,
+    pub(super) fn new(known: &AxisModel, found: &Parameters) -> Self {
+        let axis_model = known.with(|axis| *axis = with_identified(axis, found));
+        let Parameters {
+            drive_delay_s,
+            measurement_delay_s,
             ..
-        } = settings.delays;
+        } = axis_model.parameters;
         Self {
-            axis_model,
-            drive: DriveModel::new(&axis_model, settings.drive_of(axis.inertia_kg_m2)),
-            mechanics: MechanicsModel::new(&axis_model, axis.friction(), axis.transmission),
+            drive: DriveModel::new(&axis_model),
+            mechanics: MechanicsModel::new(&axis_model),
             // A float that is not a number saturates to zero here.
-            late: [drive_s, measurement_s]
-                .map(|delay_s| (delay_s / settings.periods.mechanics_s).round() as usize),
+            late: [drive_delay_s, measurement_delay_s]
+                .map(|delay_s| (delay_s / axis_model.periods.mechanics_s).round() as usize),
+            axis_model,
         }
     }
 

@@ -1,14 +1,14 @@
 //! Least squares of what a free run leaves of the measured positions, by steps of Gauss and Newton
 //! with Levenberg's and Marquardt's damping.
 
-use feedwright_control::TransmissionParameters;
+use feedwright_control::{AxisModel, Parameters};
 use feedwright_sim::map_in_parallel;
 use nalgebra::{DMatrix, DVector};
 
 use super::free_run::FreeRun;
-use super::{
-    AxisEstimate, AxisParameters, DriveSettings, NotIdentified, PARAMETERS, RIGID_PARAMETERS,
-};
+use super::{AxisEstimate, IDENTIFIED, NotIdentified, RIGID, identified};
+
+const PARAMETERS: usize = IDENTIFIED.len();
 
 /// Knots that the speed at the start is taken over: the mean of five differences has a fifth of the
 /// noise of one.
@@ -57,8 +57,9 @@ pub(super) struct Stretch {
 }
 
 /// Data and settings of a fit.
-pub(super) struct OutputErrorFit<'a> {
-    pub(super) settings: &'a DriveSettings,
+pub(super) struct OutputErrorFit {
+    /// The axis as it is known.
+    pub(super) known: AxisModel,
     pub(super) stretches: Vec<Stretch>,
     /// Knots at the beginning of a stretch that are left out.
     pub(super) settled: usize,
@@ -74,7 +75,7 @@ struct Linearised {
 
 /// State of a search.
 pub(super) struct FitState {
-    pub(super) at: AxisParameters,
+    pub(super) at: Parameters,
     scales: [f64; PARAMETERS],
     /// Number of parameters that are searched, from the first on.
     free: usize,
@@ -99,17 +100,17 @@ impl FitState {
     }
 }
 
-impl OutputErrorFit<'_> {
+impl OutputErrorFit {
     /// Identifies an axis with a rigid screw.
     pub(super) fn rigid(&self) -> Result<AxisEstimate, NotIdentified> {
-        let [inertia, _, coulomb, _, presliding, ..] = self.scales(TransmissionParameters::RIGID);
-        let start = AxisParameters {
+        let [inertia, _, coulomb, _, presliding, ..] = self.scales(&Parameters::NOTHING);
+        let start = Parameters {
             inertia_kg_m2: inertia,
             coulomb_friction_nm: coulomb,
             presliding_rad: presliding,
-            ..AxisParameters::default()
+            ..Parameters::NOTHING
         };
-        let mut state = self.start(start, RIGID_PARAMETERS);
+        let mut state = self.start(start, RIGID);
         self.steps(&mut state, MAX_STEPS)?;
         self.estimate(&state)
     }
@@ -118,15 +119,15 @@ impl OutputErrorFit<'_> {
     pub(super) fn every(&self, nth: usize) -> Self {
         let stretches = self.stretches.iter().step_by(nth).cloned().collect();
         Self {
-            settings: self.settings,
+            known: self.known,
             stretches,
             settled: self.settled,
         }
     }
 
     /// Begins a search of the first `free` parameters.
-    pub(super) fn start(&self, at: AxisParameters, free: usize) -> FitState {
-        let scales = self.scales(at.transmission);
+    pub(super) fn start(&self, at: Parameters, free: usize) -> FitState {
+        let scales = self.scales(&at);
         let left = self.left_mm(&at);
         let here = self.linearised(&at, &scales, free, &left);
         FitState {
@@ -180,14 +181,14 @@ impl OutputErrorFit<'_> {
 
     /// Sizes of the parameters before anything is known; those of all but the inertia and the
     /// presliding begin at zero.
-    fn scales(&self, screw: TransmissionParameters) -> [f64; PARAMETERS] {
-        let DriveSettings {
+    fn scales(&self, at: &Parameters) -> [f64; PARAMETERS] {
+        let Parameters {
             rad_per_mm,
             kp_1_s,
             kv_nm_s_per_rad,
             torque_limit_nm,
             ..
-        } = *self.settings;
+        } = self.known.parameters;
         let friction_nm = FRICTION_SHARE * torque_limit_nm;
         let inertia = kv_nm_s_per_rad / (LOOPS_APART * kp_1_s);
         let [share, damping_ratio, backlash_mm] = SCREW_SCALES;
@@ -198,7 +199,7 @@ impl OutputErrorFit<'_> {
             friction_nm,
             PRESLIDING_MM[0] * rad_per_mm,
             share,
-            screw.resonance_rad_s,
+            at.resonance_rad_s,
             damping_ratio,
             backlash_mm * rad_per_mm,
         ]
@@ -206,7 +207,7 @@ impl OutputErrorFit<'_> {
 
     /// Returns the residual of each measured position against the free run of these parameters, mm,
     /// by stretch.
-    fn left_mm(&self, at: &AxisParameters) -> Vec<Vec<f64>> {
+    fn left_mm(&self, at: &Parameters) -> Vec<Vec<f64>> {
         self.left_of_each_mm([*at])
             .into_iter()
             .map(|[left]| left)
@@ -214,15 +215,15 @@ impl OutputErrorFit<'_> {
     }
 
     /// The same of several sets of parameters.
-    fn left_of_each_mm<const M: usize>(&self, at: [AxisParameters; M]) -> Vec<[Vec<f64>; M]> {
-        let runs = at.map(|at| FreeRun::new(self.settings, &at));
+    fn left_of_each_mm<const M: usize>(&self, at: [Parameters; M]) -> Vec<[Vec<f64>; M]> {
+        let runs = at.map(|at| FreeRun::new(&self.known, &at));
         let left = |stretch: &Stretch| {
             let Stretch {
                 commands_mm,
                 measured_mm,
             } = stretch;
             let moved_mm = measured_mm[START_KNOTS] - measured_mm[0];
-            let start_mm_s = moved_mm / (START_KNOTS as f64 * self.settings.periods.servo_s);
+            let start_mm_s = moved_mm / (START_KNOTS as f64 * self.known.periods.servo_s);
             FreeRun::measured_mm(&runs, commands_mm, measured_mm[0], start_mm_s).map(
                 |simulated_mm| {
                     let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
@@ -237,15 +238,15 @@ impl OutputErrorFit<'_> {
 
     fn linearised(
         &self,
-        at: &AxisParameters,
+        at: &Parameters,
         scales: &[f64; PARAMETERS],
         free: usize,
         left: &[Vec<f64>],
     ) -> Linearised {
         let moved_by = |i: usize, by: f64| {
-            let mut values = <[f64; PARAMETERS]>::from(*at);
+            let mut values = identified::row(*at);
             values[i] += by * DIFFERENCES[i] * scales[i];
-            AxisParameters::from(values)
+            identified::of_row(values)
         };
         let both = |i: usize| [-1.0, 1.0].map(|by| moved_by(i, by));
         let mut moved: Vec<Vec<[Vec<f64>; 2]>> = Vec::with_capacity(free);
@@ -288,12 +289,12 @@ impl OutputErrorFit<'_> {
     }
 
     /// Returns the parameters after a step, held within the range in which the model exists.
-    fn stepped(&self, state: &FitState, step: &DVector<f64>) -> AxisParameters {
-        let mut values = <[f64; PARAMETERS]>::from(state.at);
+    fn stepped(&self, state: &FitState, step: &DVector<f64>) -> Parameters {
+        let mut values = identified::row(state.at);
         for (i, step) in step.iter().enumerate() {
             values[i] += step * state.scales[i];
         }
-        let mut next = AxisParameters::from(values);
+        let mut next = identified::of_row(values);
         next.inertia_kg_m2 = next
             .inertia_kg_m2
             .max(LEAST_INERTIA_STEP * state.at.inertia_kg_m2);
@@ -301,19 +302,18 @@ impl OutputErrorFit<'_> {
         next.coulomb_friction_nm = next.coulomb_friction_nm.max(0.0);
         next.presliding_rad = next
             .presliding_rad
-            .max(PRESLIDING_MM[1] * self.settings.rad_per_mm);
-        if state.free > RIGID_PARAMETERS {
-            let screw = &mut next.transmission;
-            let most_rad_s = MOST_RESONANCE_RAD / self.settings.periods.servo_s;
-            screw.table_share = screw.table_share.clamp(SHARES[0], SHARES[1]);
-            screw.resonance_rad_s = screw
+            .max(PRESLIDING_MM[1] * self.known.parameters.rad_per_mm);
+        if state.free > RIGID {
+            let most_rad_s = MOST_RESONANCE_RAD / self.known.periods.servo_s;
+            next.table_share = next.table_share.clamp(SHARES[0], SHARES[1]);
+            next.resonance_rad_s = next
                 .resonance_rad_s
                 .max(LEAST_RESONANCE_RAD_S)
                 .min(most_rad_s);
-            screw.damping_ratio = screw
+            next.damping_ratio = next
                 .damping_ratio
                 .clamp(DAMPING_RATIOS[0], DAMPING_RATIOS[1]);
-            screw.backlash_rad = screw.backlash_rad.max(0.0);
+            next.backlash_rad = next.backlash_rad.max(0.0);
         }
         next
     }
@@ -334,10 +334,10 @@ impl OutputErrorFit<'_> {
         let knots: usize = state.left.iter().map(Vec::len).sum();
         let left_um = (state.squares_mm2() / knots as f64).sqrt() * 1e3;
         let mut at = state.at;
-        if at.presliding_rad <= PRESLIDING_MM[1] * self.settings.rad_per_mm {
+        if at.presliding_rad <= PRESLIDING_MM[1] * self.known.parameters.rad_per_mm {
             at.presliding_rad = 0.0;
         }
-        let standard_errors = AxisParameters::from(standard);
+        let standard_errors = identified::of_row(standard);
         Ok(AxisEstimate {
             parameters: at,
             standard_errors,

@@ -10,10 +10,10 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::TransmissionParameters;
+use feedwright_control::Parameters;
 
 use super::output_error_fit::{FitState, OutputErrorFit};
-use super::{AxisEstimate, AxisParameters, PARAMETERS};
+use super::{AxisEstimate, IDENTIFIED};
 
 /// Resonances at which a search begins, Hz.
 const STARTS_HZ: [f64; 4] = [30.0, 60.0, 110.0, 200.0];
@@ -44,8 +44,8 @@ const BEYOND_DOUBT: f64 = 4.0;
 const CERTAIN: [f64; 2] = [0.1, 0.3];
 
 /// The axis with its screw, from one with a rigid screw; none where that does as well.
-pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Option<AxisEstimate> {
-    let servo_s = fit.settings.periods.servo_s;
+pub(super) fn with_screw(fit: &OutputErrorFit, rigid: &AxisEstimate) -> Option<AxisEstimate> {
+    let servo_s = fit.known.periods.servo_s;
     let part = fit.every(SUBSET);
     let rigid_mm2 = part.start(rigid.parameters, 0).squares_mm2();
     let better = |mut state: FitState, steps: u32, than_mm2: f64| {
@@ -54,13 +54,13 @@ pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Opti
     };
     let mut best: Option<FitState> = None;
     let has_presliding =
-        rigid.parameters.presliding_rad > LEAST_PRESLIDING_MM * fit.settings.rad_per_mm;
+        rigid.parameters.presliding_rad > LEAST_PRESLIDING_MM * fit.known.parameters.rad_per_mm;
     for share in BACKLASH_SHARES
         .into_iter()
         .filter(|share| has_presliding || *share == 0.0)
     {
         for hz in STARTS_HZ.into_iter().filter(|hz| hz * servo_s < MOST_TURNS) {
-            let started = part.start(start(fit, rigid.parameters, hz, share), PARAMETERS);
+            let started = part.start(start(fit, rigid.parameters, hz, share), IDENTIFIED.len());
             let tried = TRIED
                 .into_iter()
                 .try_fold(started, |state, (steps, times)| {
@@ -74,15 +74,15 @@ pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Opti
             break;
         }
     }
-    let mut whole = fit.start(best?.at, PARAMETERS);
+    let mut whole = fit.start(best?.at, IDENTIFIED.len());
     fit.steps(&mut whole, LAST_STEPS).ok()?;
     let found = fit.estimate(&whole).ok()?;
-    let certain = |value: fn(&AxisParameters) -> f64, most: f64| {
+    let certain = |value: fn(&Parameters) -> f64, most: f64| {
         value(&found.standard_errors) < most * value(&found.parameters)
     };
     let [resonance, share] = CERTAIN;
-    let is_certain = certain(|axis| axis.transmission.resonance_rad_s, resonance)
-        && certain(|axis| axis.transmission.table_share, share);
+    let is_certain =
+        certain(|axis| axis.resonance_rad_s, resonance) && certain(|axis| axis.table_share, share);
     (is_certain && is_less(&whole, &fit.start(rigid.parameters, 0))).then_some(found)
 }
 
@@ -105,21 +105,13 @@ fn is_below(pairs_mm2: impl Iterator<Item = (f64, f64)>) -> bool {
     mean > BEYOND_DOUBT * (variance / n).sqrt()
 }
 
-fn start(
-    fit: &OutputErrorFit<'_>,
-    rigid: AxisParameters,
-    hz: f64,
-    backlash_share: f64,
-) -> AxisParameters {
-    let transmission = TransmissionParameters {
+fn start(fit: &OutputErrorFit, rigid: Parameters, hz: f64, backlash_share: f64) -> Parameters {
+    Parameters {
         table_share: START_SHARE,
         resonance_rad_s: TAU * hz,
         damping_ratio: START_DAMPING,
-        backlash_rad: START_BACKLASH_MM * fit.settings.rad_per_mm
+        backlash_rad: START_BACKLASH_MM * fit.known.parameters.rad_per_mm
             + backlash_share * rigid.presliding_rad,
-    };
-    AxisParameters {
-        transmission,
         presliding_rad: (1.0 - backlash_share) * rigid.presliding_rad,
         ..rigid
     }

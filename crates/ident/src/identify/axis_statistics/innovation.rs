@@ -116,22 +116,21 @@ impl AxisFilter {
     pub(super) fn new(known: &KnownAxis, period: &Period, noise_rad: f64) -> Self {
         let axis_model = AxisModel::new(known.nominal, period.periods());
         let substeps = |s: f64| (s / period.mechanics_s).round().max(0.0) as u32;
-        let friction = known.friction;
+        let parameters = &axis_model.parameters;
         let mut filter = Self {
-            axis_model,
-            drive: DriveModel::new(&axis_model, known.drive),
-            mechanics: MechanicsModel::new(&axis_model, friction, known.transmission),
-            late: substeps(known.delays.measurement_s) + substeps(known.delays.drive_s),
+            drive: DriveModel::new(&axis_model),
+            mechanics: MechanicsModel::new(&axis_model),
+            late: substeps(parameters.measurement_delay_s) + substeps(parameters.drive_delay_s),
             gains: [0.0; STATES],
             linear: [[0.0; STATES]; STATES],
             turning: [
                 TURNED
-                    * axis_model
-                        .parameters
+                    * parameters
                         .coulomb_smoothing_rad_s
-                        .max(0.5 * friction.stribeck_rad_s),
-                TURNED * friction.presliding_rad,
+                        .max(0.5 * parameters.stribeck_rad_s),
+                TURNED * parameters.presliding_rad,
             ],
+            axis_model,
         };
         filter.linear = filter.linear_part();
         let coulomb_nm = axis_model

@@ -26,7 +26,7 @@ use super::axis_record::AxisRecord;
 use super::output_error::{NEARLY_DONE, OutputErrors, square};
 use super::priors::Prior;
 use super::standard_errors::StandardErrors;
-use super::terms::{ModelTerm, TERMS, TermValues};
+use super::terms::{AT_LIMIT, ModelTerm, TERMS, TermValues, Tried};
 
 /// The terms of an axis, and a fit of them.
 #[derive(Debug, Clone)]
@@ -394,8 +394,6 @@ const FASTER: f64 = 1.02;
 const FAR: f64 = 2.0;
 /// Start of the fit of the deflection before friction slides, mm.
 const PRESLIDING_MM: f64 = 0.005;
-/// Start of the fit of a limit of the speed, as a part of the highest speed.
-const AT_LIMIT: f64 = 0.97;
 /// Terms that a drive may have.
 pub(super) const OPTIONAL: [ModelTerm; 3] = [
     ModelTerm::Integral,
@@ -562,26 +560,14 @@ fn candidates(
     let sample_s = record.sample_s;
     let speed_mm_s = record.actual_speed_mm_s();
     let acceleration_mm_s2 = largest(&record.slopes(&speed_mm_s, 3));
-    let of_damping = 0.03 * at.get(ModelTerm::Damping);
-    let starts: [(ModelTerm, &[f64]); 12] = [
-        (ModelTerm::Integral, &[10.0, 60.0]),
-        (ModelTerm::VelocityFeedforward, &[0.3, 0.95]),
-        (ModelTerm::AccelerationFeedforward, &[0.5]),
-        (ModelTerm::LoopDelay, &[0.5 * sample_s, 2.0 * sample_s]),
-        (ModelTerm::FilterTime, &[0.2 * sample_s, sample_s]),
-        (ModelTerm::Viscous, &[of_damping]),
-        (ModelTerm::Presliding, &[0.003, 0.03]),
-        (ModelTerm::Stribeck, &[0.3]),
-        (ModelTerm::SpeedLimit, &[AT_LIMIT * largest(&speed_mm_s)]),
-        (ModelTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
-        (
-            ModelTerm::Resonance,
-            &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)],
-        ),
-        (ModelTerm::Backlash, &[0.003, 0.02]),
-    ];
+    let log = Tried {
+        sample_s,
+        damping_1_s: at.get(ModelTerm::Damping),
+        fastest_mm_s: largest(&speed_mm_s),
+        acceleration_mm_s2,
+    };
     let mut candidates = vec![];
-    for (term, values) in starts {
+    for term in ModelTerm::ALL {
         // Without an integral the two parts of the damping are the same to the position.
         let is_told = match term {
             ModelTerm::Viscous => terms.contains(&ModelTerm::Integral) && at.get(term) == 0.0,
@@ -598,8 +584,8 @@ fn candidates(
         if terms.contains(&term) || !is_told || facts.known(term).is_some() {
             continue;
         }
-        for value in values {
-            let start = at.with(term, *value);
+        for value in (term.row().tried)(&log) {
+            let start = at.with(term, value);
             let (terms, start) = match term {
                 ModelTerm::Stribeck => (vec![term, ModelTerm::StribeckSpeed], start),
                 ModelTerm::Resonance => (

@@ -45,9 +45,10 @@ impl AxisFacts {
         Some(self.viscous? / self.inertia?)
     }
 
-    /// Returns the known value of a term of the drive.
+    /// Returns the stated value of a term, or the position gain for the gain of both loops.
     pub(super) fn known(&self, term: ModelTerm) -> Option<KnownValue> {
         match term {
+            ModelTerm::LoopGain => self.kp_1_s,
             ModelTerm::Integral => self.inverse_integral_1_s,
             ModelTerm::VelocityFeedforward => self.velocity_feedforward,
             ModelTerm::AccelerationFeedforward => self.acceleration_feedforward,
@@ -63,19 +64,12 @@ impl AxisFacts {
         {
             at = at.with(ModelTerm::Viscous, viscous_1_s);
         }
-        for term in [
-            ModelTerm::Integral,
-            ModelTerm::VelocityFeedforward,
-            ModelTerm::AccelerationFeedforward,
-            ModelTerm::LoopDelay,
-        ] {
-            at = self
-                .known(term)
-                .map_or(at, |known| at.with(term, known.value));
+        for term in ModelTerm::ALL {
+            at = self.known(term).map_or(at, |known| match term {
+                ModelTerm::LoopGain => at.with(term, known.value * at.speed_gain_1_s()),
+                _ => at.with(term, known.value),
+            });
         }
-        at = self.kp_1_s.map_or(at, |kp| {
-            at.with(ModelTerm::LoopGain, kp.value * at.speed_gain_1_s())
-        });
         at = self
             .command_delay_s
             .map_or(at, |delay_s| at.with(ModelTerm::CommandDelay, delay_s));

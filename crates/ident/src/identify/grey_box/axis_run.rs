@@ -9,9 +9,8 @@ use std::array::from_fn;
 
 use feedwright_control::{
     AxisModel, AxisState, DriveModel, DriveReference, DriveState, FrictionModel, Periods,
-    TransmissionModel, TransmissionParameters,
+    TransmissionModel,
 };
-use feedwright_sim::Transmission;
 
 use super::terms::{ModelTerm, TermValues};
 
@@ -186,8 +185,8 @@ impl AxisRun {
         Self {
             values: *values,
             axis_model,
-            drive: DriveModel::new(&axis_model, values.drive()),
-            friction: FrictionModel::new(&axis_model, values.friction()),
+            drive: DriveModel::new(&axis_model),
+            friction: FrictionModel::new(&axis_model),
             servo_per_sample,
             late_samples: values.commands_late_s() / sample_s,
             loop_late,
@@ -196,7 +195,7 @@ impl AxisRun {
             }),
             loop_part: loop_late.fract(),
             window: (window > 1.0).then_some(window),
-            screw: screw_model(values, periods.mechanics_s),
+            screw: TransmissionModel::new(&axis_model),
             holds: values.get(ModelTerm::SpeedHold) > 0.0,
         }
     }
@@ -426,23 +425,4 @@ impl AxisRun {
         }
         state.axis.angle_rad += dt_s * state.axis.speed_rad_s;
     }
-}
-
-/// The screw of an axis of inertia 1, whose motor turns by 1 for a mm.
-fn screw_model(values: &TermValues, mechanics_s: f64) -> Option<TransmissionModel> {
-    let Transmission {
-        table_share,
-        resonance_hz,
-        damping_ratio,
-        backlash_um,
-        ..
-    } = values.transmission(mechanics_s)?;
-    let resonance_rad_s = std::f64::consts::TAU * resonance_hz;
-    let screw = TransmissionParameters {
-        table_share,
-        resonance_rad_s,
-        damping_ratio,
-        backlash_rad: 1e-3 * backlash_um,
-    };
-    TransmissionModel::new(1.0, mechanics_s, screw)
 }

@@ -7,91 +7,57 @@
 
 use super::axis_facts::AxisFacts;
 use super::known_value::KnownValue;
-use super::terms::{ModelTerm, TermValues};
+use super::terms::{Expected, ModelTerm, TermValues};
 
 /// A function of the numbers of an axis, what it is expected to be, and its standard deviation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prior {
     of: fn(&TermValues) -> f64,
+    /// True if the logarithm of the function is expected.
+    is_size: bool,
     known: KnownValue,
 }
 
 impl Prior {
     /// Returns the deviation of values from the prior, in standard deviations.
     pub(super) fn residual(&self, values: &TermValues) -> f64 {
-        (self.known.value - (self.of)(values)) / self.known.spread
+        let value = (self.of)(values);
+        let value = if self.is_size {
+            libm::log(value)
+        } else {
+            value
+        };
+        (self.known.value - value) / self.known.spread
     }
 
     /// All that are known of an axis.
     pub(super) fn all(facts: &AxisFacts) -> Vec<Self> {
-        let log = |value: f64| libm::log(value.max(LEAST));
-        let of_size = |of, typical: f64, factor: f64| Self {
+        // A sum over the priors keeps its order.
+        let [gain, damping, coulomb, rest @ ..] = ModelTerm::ALL;
+        let in_order = [damping, coulomb, gain].into_iter().chain(rest);
+        in_order
+            .filter_map(|term| Self::of_term(term, facts.known(term)))
+            .collect()
+    }
+
+    /// Returns the prior of a term: its stated value, or the expected one.
+    fn of_term(term: ModelTerm, stated: Option<KnownValue>) -> Option<Self> {
+        let about = |of, [value, spread]: [f64; 2]| Self {
             of,
-            known: KnownValue {
-                value: log(typical),
-                spread: log(factor),
-            },
-        };
-        let about = |of, value, spread| Self {
-            of,
+            is_size: false,
             known: KnownValue { value, spread },
         };
-        let given = |of, known: Option<KnownValue>, otherwise: Self| {
-            known.map_or(otherwise, |known| Self { of, known })
-        };
-        vec![
-            of_size(|v| libm::log(v.get(ModelTerm::Damping)), 150.0, 5.0),
-            of_size(
-                |v| libm::log(v.get(ModelTerm::Coulomb).max(LEAST)),
-                50.0,
-                30.0,
-            ),
-            given(
-                TermValues::kp_1_s,
-                facts.kp_1_s,
-                of_size(|v| libm::log(v.kp_1_s()), 50.0, 4.0),
-            ),
-            about(
-                |v| v.get(ModelTerm::Offset) / (1.0 + v.get(ModelTerm::Coulomb)),
-                0.0,
-                0.3,
-            ),
-            given(
-                |v| v.get(ModelTerm::LoopDelay),
-                facts.drive_delay_s,
-                about(|v| v.get(ModelTerm::LoopDelay), 0.0, 0.002),
-            ),
-            given(
-                |v| v.get(ModelTerm::VelocityFeedforward),
-                facts.velocity_feedforward,
-                about(|v| v.get(ModelTerm::VelocityFeedforward), 0.5, 1.0),
-            ),
-            given(
-                |v| v.get(ModelTerm::AccelerationFeedforward),
-                facts.acceleration_feedforward,
-                about(|v| v.get(ModelTerm::AccelerationFeedforward), 0.0, 0.7),
-            ),
-            given(
-                |v| v.get(ModelTerm::Integral),
-                facts.inverse_integral_1_s,
-                about(|v| v.get(ModelTerm::Integral), 0.0, 150.0),
-            ),
-            about(|v| v.get(ModelTerm::FilterTime), 0.0, 5e-4),
-            about(|v| v.get(ModelTerm::Presliding), 0.0, 0.03),
-            about(|v| v.get(ModelTerm::Stribeck), 0.0, 0.5),
-            of_size(
-                |v| libm::log(v.get(ModelTerm::StribeckSpeed).max(LEAST)),
-                2.0,
-                2.5,
-            ),
-            about(
-                |v| v.get(ModelTerm::Viscous) / v.get(ModelTerm::Damping),
-                0.0,
-                0.05,
-            ),
-        ]
+        let expected = term.row().expected?;
+        Some(match (expected, stated) {
+            (
+                Expected::About(of, _) | Expected::Size(of, _),
+                Some(KnownValue { value, spread }),
+            ) => about(of, [value, spread]),
+            (Expected::About(of, known), None) => about(of, known),
+            (Expected::Size(of, known), None) => Self {
+                is_size: true,
+                ..about(of, known.map(libm::log))
+            },
+        })
     }
 }
-
-/// Below this a size has no logarithm to speak of.
-const LEAST: f64 = 1e-3;
