@@ -11,7 +11,7 @@ fn results(folder: &Folder) -> Value {
 }
 
 #[test]
-fn arguments_that_are_none() {
+fn arguments_that_do_not_exist() {
     let folder = Folder::new();
     let before = folder.content();
     for (arguments, says) in [
@@ -47,7 +47,7 @@ fn arguments_that_are_none() {
 }
 
 #[test]
-fn a_comparison_of_what_there_is_not() {
+fn a_comparison_of_what_does_not_exist() {
     let folder = Folder::new();
     folder.file("space.ngc", "G21 G90 F600\nG1 X1 Z1\nM2\n");
     folder.file("wrong.ngc", "G21 G90\nG1 X1\nM2\n");
@@ -149,7 +149,7 @@ fn contours_are_exported() {
 }
 
 #[test]
-fn a_correction_that_is_worse_is_told_and_not_written() {
+fn a_correction_that_is_worse_is_reported_and_not_written() {
     let folder = Folder::new();
     folder.file(
         "square.ngc",
@@ -162,7 +162,7 @@ fn a_correction_that_is_worse_is_told_and_not_written() {
     };
     let worse = cut("square.ngc", "contour-compensation");
     assert_eq!(worse.code, Some(1), "{worse:?}");
-    let text = worse.told();
+    let text = worse.reported();
     assert!(
         text.contains(
             "contour-compensation is worse than uncorrected for this part on this machine (RMS"

@@ -292,7 +292,7 @@ fn acceleration_mm_s2(rows: &[Row], servo_s: f64) -> f64 {
 }
 
 #[test]
-fn what_the_controller_is_told_wrong_does_no_harm() {
+fn wrong_values_of_the_controller_do_no_harm() {
     let (times, contours) = part_or_whole(
         (TIMES, &["square"][..]),
         (MANY_TIMES, &["circle", "star", "square"]),
@@ -306,7 +306,7 @@ fn what_the_controller_is_told_wrong_does_no_harm() {
     let cases: Vec<_> = faults().collect();
     let failures: Vec<String> = cases
         .into_par_iter()
-        .flat_map(|fault| told_wrong(&machine, times, fault))
+        .flat_map(|fault| assumed_wrong(&machine, times, fault))
         .collect();
     assert!(
         failures.is_empty(),
@@ -317,7 +317,7 @@ fn what_the_controller_is_told_wrong_does_no_harm() {
 }
 
 /// All times of a fault on a contour: what failed.
-fn told_wrong(machine: &Machine, times: usize, (name, fault): (&str, Fault)) -> Vec<String> {
+fn assumed_wrong(machine: &Machine, times: usize, (name, fault): (&str, Fault)) -> Vec<String> {
     let steps = laps(name);
     let undisturbed = |controller: &mut dyn Controller<2>| {
         cut(machine, &steps, usize::MAX, controller, |_, tool_mm| {

@@ -142,8 +142,8 @@ fn a_measured_run_is_drawn_without_torque() {
     browser.until(ALL_PAINTED);
     browser.press("ArrowRight", 39);
     let torque = "[...document.querySelectorAll('.plot')].find((plot) => plot.textContent.includes('Torque X')).querySelector('.live').textContent";
-    let told = browser.value(torque);
-    assert!(told.as_str().unwrap().contains('–'), "{told}");
+    let reported = browser.value(torque);
+    assert!(reported.as_str().unwrap().contains('–'), "{reported}");
     assert!(text(&mut browser, ".badge").contains("log"));
     assert_eq!(browser.faults(), [""; 0]);
 }

@@ -225,7 +225,7 @@ fn a_mass_sticks_up_to_the_break_away_force_of_its_direction_and_then_slips() {
 }
 
 #[test]
-fn on_a_long_straight_the_following_error_is_that_of_the_loops_and_delays() {
+fn on_a_long_straight_the_following_error_comes_from_the_loops_and_delays() {
     for name in INDEPENDENT_MACHINES {
         let mut machine = IndependentMachine::named(name).unwrap();
         for axis in &mut machine.axes {

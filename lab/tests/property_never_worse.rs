@@ -29,7 +29,7 @@ fn options() -> SweepOptions {
     SweepOptions::of(vec![CONTROLLERS.find(BEST).unwrap()])
 }
 
-fn told(row: &SweepRow) -> String {
+fn reported(row: &SweepRow) -> String {
     let (before, after) = (&row.uncorrected, &row.corrected);
     format!(
         "{} on {}: {:.2} / {:.1} -> {:.2} / {:.1} um, worse in {:?}, {:?}",
@@ -68,13 +68,13 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_uncorrected() {
     failures.sort_by(|a, b| b.0.severity().total_cmp(&a.0.severity()));
     failures
         .iter()
-        .for_each(|(row, _)| eprintln!("{}", told(row)));
+        .for_each(|(row, _)| eprintln!("{}", reported(row)));
     if let Some((row, made)) = failures.first() {
         let (program, machine) = (&made.text, made.variant.text());
         panic!(
             "{} of {cuts} cuts are worse; the worst, {}:\n{program}\n{machine}",
             failures.len(),
-            told(row)
+            reported(row)
         );
     }
 }
@@ -151,7 +151,7 @@ fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
         .rows(&program, &machine, &())
         .unwrap()
         .remove(0);
-    eprintln!("{}", told(&row));
+    eprintln!("{}", reported(&row));
     row
 }
 

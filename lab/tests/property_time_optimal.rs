@@ -516,8 +516,8 @@ fn more_tolerance_and_looser_limits_are_not_slower() {
         .filter(|(part, _)| *part > SLOWER)
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let told: Vec<&str> = found.iter().map(|(_, text)| &text[..]).collect();
+    let reported: Vec<&str> = found.iter().map(|(_, text)| &text[..]).collect();
     let few = found.len() <= part_or_whole(0, 4)
         && found.first().is_none_or(|(part, _)| *part < MUCH_SLOWER);
-    assert!(few, "{}", told.join("\n"));
+    assert!(few, "{}", reported.join("\n"));
 }

@@ -125,14 +125,14 @@ class Cases:
         # Frozen, or so far from where it is predicted that the predictions are wrong: whichever is seen first.
         assert 10 in faults(recording.rows) or 11 in faults(recording.rows), faults(recording.rows)
         assert any("following error" in text for text in recording.result["messages"]), "LinuxCNC did not see it"
-        return f"told by {recording.result['messages']}; {self.quiet(recording, leap_mm=20.0, messages=True)}"
+        return f"reported by {recording.result['messages']}; {self.quiet(recording, leap_mm=20.0, messages=True)}"
 
     def case_feedback_not_a_number(self):
         recording = self.run("in_mid_cut", {"at_s": 1.5, "changes": {"feedwright-plant.wire-noise": 1}})
         assert 10 in faults(recording.rows), faults(recording.rows)
         assert all(math.isfinite(x) for row in recording.rows for x in (*row.drive, *row.feedback))
         assert any("following error" in text for text in recording.result["messages"]), "LinuxCNC did not see it"
-        return f"told by {recording.result['messages']}"
+        return f"reported by {recording.result['messages']}"
 
     def case_short_loss_of_feedback(self):
         recording = self.run("in_mid_cut", {"at_s": 1.5, "changes": {"feedwright-plant.wire-noise": 1}, "again_s": 0.004,

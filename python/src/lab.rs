@@ -31,7 +31,7 @@ use crate::jobs::{CutOutcome, Ran};
 use crate::watched::watched;
 use guest::{PlantTerm, PythonController};
 use raised::{GuardedWatch, Raised};
-use task::{LabOptions, LabTask, told};
+use task::{LabOptions, LabTask, reported};
 
 /// A cut with a controller of Python.
 struct GuestRun {
@@ -56,10 +56,10 @@ impl GuestRun {
         let known = self.task.known(axes)?;
         let made = |controller: &Py<PyAny>| {
             let made = self.raised.call(|py| {
-                let told = told(py, &known, axes)?;
+                let reported = reported(py, &known, axes)?;
                 PythonController::new(
                     controller.bind(py),
-                    &told,
+                    &reported,
                     known.period.servo_s,
                     self.raised.clone(),
                 )

@@ -47,17 +47,19 @@ impl Watch for Progress {
 impl Progress {
     /// Calls the callback with the stage, the done steps and all steps. Raises what the callback or
     /// a signal raises.
-    fn tell(&self, told: Option<&Py<PyAny>>) -> PyResult<()> {
+    fn call(&self, callback: Option<&Py<PyAny>>) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
-            let Some(told) = told else { return Ok(()) };
+            let Some(callback) = callback else {
+                return Ok(());
+            };
             let (stage, steps) = self
                 .stage
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
                 .clone();
             let done = self.done.load(Ordering::Relaxed).min(steps);
-            told.call1(py, (stage, done, steps)).map(|_| ())
+            callback.call1(py, (stage, done, steps)).map(|_| ())
         })
     }
 }
@@ -67,7 +69,7 @@ impl Progress {
 /// cancels the job and returns at once: the result of the job is dropped.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
-    told: Option<&Py<PyAny>>,
+    callback: Option<&Py<PyAny>>,
     job: impl FnOnce(&dyn Watch) -> Result<T, Report> + Send + 'static,
 ) -> PyResult<T> {
     let progress = Arc::new(Progress {
@@ -90,7 +92,7 @@ pub(crate) fn watched<T: Send + 'static>(
                 Ok(result) => return result.map_err(|error| exception(&error)),
                 Err(RecvTimeoutError::Timeout) => {
                     progress
-                        .tell(told)
+                        .call(callback)
                         .inspect_err(|_| progress.cancelled.store(true, Ordering::Relaxed))?;
                 }
                 Err(RecvTimeoutError::Disconnected) => {

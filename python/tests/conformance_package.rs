@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 
 /// The interpreter of all tests.
 static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
-/// What the tests of the package import.
+/// Packages of Python that the tests import.
 const NEEDED: [&str; 5] = [
     "distributed==2026.8.0",
     "gymnasium==1.4.0",
@@ -113,10 +113,10 @@ fn runs(tests: &str) {
         .current_dir(root())
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&ran.stderr);
+    let reported = String::from_utf8_lossy(&ran.stderr);
     assert!(
-        ran.status.success() && told.contains("\nOK"),
-        "{told}{}",
+        ran.status.success() && reported.contains("\nOK"),
+        "{reported}{}",
         String::from_utf8_lossy(&ran.stdout)
     );
 }

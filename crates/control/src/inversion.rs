@@ -457,7 +457,7 @@ mod tests {
         }
     }
 
-    fn exact_gradient_is_that_of_the_index<const H: usize>() {
+    fn exact_gradient_agrees_with_the_index<const H: usize>() {
         let (net, inputs, feeds) = sample::<H>();
         let settings = settings(Gradient::Exact);
         let mut stepped = feeds;
@@ -482,10 +482,10 @@ mod tests {
 
     #[test]
     fn the_exact_gradient_is_the_difference_quotient_of_the_index_whatever_the_horizon() {
-        exact_gradient_is_that_of_the_index::<1>();
-        exact_gradient_is_that_of_the_index::<3>();
-        exact_gradient_is_that_of_the_index::<8>();
-        exact_gradient_is_that_of_the_index::<20>();
+        exact_gradient_agrees_with_the_index::<1>();
+        exact_gradient_agrees_with_the_index::<3>();
+        exact_gradient_agrees_with_the_index::<8>();
+        exact_gradient_agrees_with_the_index::<20>();
     }
 
     #[test]

@@ -561,7 +561,7 @@ mod tests {
     }
 
     #[test]
-    fn the_checksum_is_that_of_the_standard() {
+    fn the_checksum_agrees_with_the_standard() {
         // The check value of CRC-32/ISO-HDLC in every catalogue.
         assert_eq!(crc_32(b"123456789"), 0xCBF4_3926);
     }
@@ -778,7 +778,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_model_is_told_by_what_is_wrong() {
+    fn an_invalid_model_is_reported_by_what_is_wrong() {
         let with_whole = |at: usize, whole: u32| {
             let mut bytes = block(&contour::<2>());
             bytes[at..at + 4].copy_from_slice(&whole.to_le_bytes());

@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_that_of_the_library_and_what_is_not_finite_has_none() {
+    fn it_agrees_with_the_library_and_what_is_not_finite_has_none() {
         for n in -20_000..20_000 {
             let angle_rad = 0.0137 * f64::from(n);
             assert!(

@@ -13,7 +13,7 @@
 //! | `supervisor/whiteness.rs` | is the noise of the measurement as stated? | the filter takes another noise |
 //! | `supervisor/load.rs` | can the load that a filter finds be real? | disengages at once |
 //! | `supervisor/one_step.rs` | does the axis move within a servo period as its model expects? | the controller requests less |
-//! | `supervisor/proof.rs` | may a model be used again after it was wrong? | stays disengaged |
+//! | `supervisor/readmission.rs` | may a model be used again after it was wrong? | stays disengaged |
 //! | `supervisor/validity.rs` | does the model predict what the axis does? | disengages at once |
 //! | `supervisor/first_use.rs` | does the model belong to this machine? | does not engage before |
 //! | `supervisor/model_choice.rs` | does the nominal model explain an axis as well as the learned one? | the axis follows the learned one |
@@ -45,7 +45,7 @@ pub(crate) mod outliers;
 pub(crate) mod whiteness;
 pub(crate) mod load;
 pub(crate) mod one_step;
-mod proof;
+mod readmission;
 pub(crate) mod validity;
 pub(crate) mod first_use;
 pub(crate) mod model_choice;

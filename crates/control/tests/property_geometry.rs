@@ -63,7 +63,7 @@ proptest! {
     }
 
     #[test]
-    fn the_derivative_is_that_of_differences(geometry in geometry(), joints_mm in place(), moved in place()) {
+    fn the_derivative_agrees_with_differences(geometry in geometry(), joints_mm in place(), moved in place()) {
         let moved = moved.map(|part| part / TRAVEL_MM);
         let step = |k: f64| geometry.tool_mm([0, 1, 2].map(|i| joints_mm[i] + k * moved[i]));
         let h = 1e-3;

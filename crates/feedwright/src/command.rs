@@ -46,7 +46,7 @@ pub use date::today;
 pub use faults::{fault_findings, fault_text, mistake_json};
 pub use files_to_check::FilesToCheck;
 pub use message::{OUT_OF_TOLERANCE, printed, remark};
-pub use streams::{make_folder, tables, tell_written};
+pub use streams::{make_folder, report_written, tables};
 pub use sweep::job_list::JobList;
 pub use sweep::result_table::{RESULT_COLUMNS, ResultColumn, ResultTable};
 pub use sweep::{JobDone, do_job};

@@ -135,7 +135,7 @@ pub struct CorrectJob {
     /// The machine that cuts it.
     pub machine: Machine,
     /// Machine that the correction assumes; none means `machine` itself.
-    pub believed: Option<Machine>,
+    pub assumed: Option<Machine>,
     /// The geometry that the program compensates.
     pub(crate) compensation: GeometryChoice,
     /// The control that the corrected program is for.
@@ -147,7 +147,7 @@ pub struct CorrectJob {
     /// Logs of cuts of the part, with this program or with corrected ones.
     pub logs: Vec<MeasuredLog>,
     /// Standard deviation of each value of the machine, as a fraction of it; 0 if the machine is
-    /// exact. Ignored if there are logs, or if `believed` is set.
+    /// exact. Ignored if there are logs, or if `assumed` is set.
     pub file_error: f64,
     /// Servo periods of a piece. A program of more than twice as many is corrected in pieces.
     pub piece_periods: u64,
@@ -229,7 +229,7 @@ impl CorrectJob {
         Self {
             program,
             machine,
-            believed: None,
+            assumed: None,
             compensation: GeometryChoice::default(),
             target,
             feed_mm_s: None,
@@ -366,13 +366,13 @@ impl CorrectJob {
     ) -> Result<JobMachines, JobError> {
         let of_job = self.compensation.on(&self.machine, box_mm)?;
         let learned = self.learned(&of_job, original, axes, watch)?;
-        let is_uncertain = learned.is_none() && self.believed.is_none();
+        let is_uncertain = learned.is_none() && self.assumed.is_none();
         let file = is_uncertain
             .then(|| FileModel::uncertain(&of_job, axes, self.file_error))
             .flatten();
-        let believed = self.believed.as_ref();
+        let assumed = self.assumed.as_ref();
         let compensated = of_job.compensated.clone();
-        let believed = believed.map(|machine| Machine {
+        let assumed = assumed.map(|machine| Machine {
             compensated,
             ..machine.clone()
         });
@@ -382,7 +382,7 @@ impl CorrectJob {
             learned,
             file,
         };
-        machines.nominal = deterministic(believed.as_ref().unwrap_or(machines.machine()));
+        machines.nominal = deterministic(assumed.as_ref().unwrap_or(machines.machine()));
         Ok(machines)
     }
 
@@ -466,7 +466,7 @@ impl CorrectJob {
         let Self {
             program: _,
             machine,
-            believed,
+            assumed,
             compensation,
             target,
             feed_mm_s,
@@ -480,7 +480,7 @@ impl CorrectJob {
         let content = |machine: &Machine| json!([machine.text(), geometry_content(machine)]);
         json!([
             content(machine),
-            believed.as_ref().map(content),
+            assumed.as_ref().map(content),
             compensation,
             target.name,
             feed_mm_s,

@@ -123,7 +123,7 @@ pub struct JobOutcome {
     /// Warnings of the reader.
     pub warnings: Vec<feedwright_gcode::Diagnostic>,
     /// Axes that the log of the model does not determine well enough, in words.
-    pub doubts: Vec<String>,
+    pub undetermined: Vec<String>,
     /// Controllers that cut uncorrected, because nothing was identified that they could use.
     pub without_identification: Vec<CutsUncorrected>,
     /// Guesses about the log, and remarks on it.
@@ -241,7 +241,7 @@ impl CheckedJob<'_> {
     where
         Entry: Make<N>,
     {
-        let (job, doubts) = self.with_model(watch)?;
+        let (job, undetermined) = self.with_model(watch)?;
         let plan = job.plan::<N>(watch)?;
         let cycle = job.looks_at_cut(&plan);
         let cut = plan.cut(guests, cycle.as_ref().map(|cycle| cycle as _));
@@ -273,7 +273,7 @@ impl CheckedJob<'_> {
                     .is_none_or(|outcome| outcome.refusal.is_none()),
             warnings: self.warnings(),
             report,
-            doubts,
+            undetermined,
             without_identification: cuts.without_identification,
             log_findings,
             learned: cuts.learned,

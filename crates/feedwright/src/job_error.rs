@@ -119,7 +119,7 @@ pub enum JobError {
         hint: Option<String>,
     },
     /// Nothing can be learned from a log of the part.
-    #[error("{log} tells nothing for {part}: {error}")]
+    #[error("{log} contains nothing for {part}: {error}")]
     NotLearned {
         /// The log.
         log: String,

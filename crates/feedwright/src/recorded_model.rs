@@ -52,7 +52,7 @@ pub(crate) struct RecordedModel {
     /// The model.
     pub(crate) model: Model,
     /// Axes that the log does not determine well enough, in words.
-    pub(crate) doubts: Vec<String>,
+    pub(crate) warnings: Vec<String>,
     /// Machines that fit the log about as well.
     pub(crate) fitting: Vec<Machine>,
 }
@@ -66,7 +66,7 @@ pub enum RecordedModelError {
         "give a model with --model, take the settings of the drives from the machine file with --exact-settings, or cut without \
          a correction: --controller uncorrected"
     ))]
-    NotTold {
+    NotDetermined {
         /// Name of the machine.
         machine: String,
         /// Cause.
@@ -80,15 +80,16 @@ pub enum RecordedModelError {
 
 /// A text that follows from a log, and the axes in it that are uncertain.
 #[derive(Serialize, Deserialize)]
-struct Told {
+struct FromLog {
     text: String,
-    doubts: Vec<String>,
+    #[serde(rename = "doubts")]
+    warnings: Vec<String>,
     /// Machine files of other machines that fit the log about as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     fitting: Vec<String>,
 }
 
-impl Told {
+impl FromLog {
     /// Returns the text that is shipped with the program, with at least `fitting` machines, or that
     /// is kept for the content; otherwise makes it.
     fn of(
@@ -96,7 +97,8 @@ impl Told {
         fitting: usize,
         make: impl FnOnce() -> Result<Self, RecordedModelError>,
     ) -> Result<Self, RecordedModelError> {
-        if let Some(shipped) = built_in::told(content).filter(|told| told.fitting.len() >= fitting)
+        if let Some(shipped) =
+            built_in::from_log(content).filter(|from_log| from_log.fitting.len() >= fitting)
         {
             return Ok(shipped);
         }
@@ -119,7 +121,10 @@ impl Told {
         watch: &dyn Watch,
     ) -> Result<Self, RecordedModelError> {
         let mut identified = identified(machine, axes, seed, watch)?;
-        let (name, doubts) = (format!("{} by its log", machine.name), doubts(&identified));
+        let (name, warnings) = (
+            format!("{} by its log", machine.name),
+            warnings(&identified),
+        );
         let text = machine_text(&identified, &name);
         let found = identified.machine.axes.clone();
         let mechanics_s = servo_period_s(identified.machine.sample_s) / f64::from(SERVO_MECHANICS);
@@ -136,7 +141,7 @@ impl Told {
         };
         Ok(Self {
             text,
-            doubts,
+            warnings,
             fitting: (1..=MOST_FITTING as u64).map(draw).collect(),
         })
     }
@@ -191,22 +196,22 @@ fn recorded_model(
     let content = model_content(machine, axes, (entry, choices));
     let make = || {
         let mut steps = identifying(machine, watch);
-        let (told, doubts) = steps.filled(LOG_SHARE, |watch| {
+        let (from_log, warnings) = steps.filled(LOG_SHARE, |watch| {
             recorded_machine(machine, axes, choices.seed, watch)
         })?;
-        let text = trained(machine, &told, axes, (entry, choices), date)?;
-        Ok(Told {
+        let text = trained(machine, &from_log, axes, (entry, choices), date)?;
+        Ok(FromLog {
             text,
-            doubts,
+            warnings,
             fitting: vec![],
         })
     };
-    let told = Told::of(&content, 0, make)?;
-    let model = Model::parse("the model of the log", &told.text)
-        .map_err(|error| not_told(machine, &error))?;
+    let from_log = FromLog::of(&content, 0, make)?;
+    let model = Model::parse("the model of the log", &from_log.text)
+        .map_err(|error| not_determined(machine, &error))?;
     Ok(RecordedModel {
         model,
-        doubts: told.doubts,
+        warnings: from_log.warnings,
         fitting: Vec::new(),
     })
 }
@@ -219,14 +224,14 @@ fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Cho
 /// Returns the model file of a machine that was identified from a log.
 fn trained(
     machine: &Machine,
-    told: &Machine,
+    from_log: &Machine,
     axes: usize,
     (entry, choices): (&Entry, &Choices),
     date: String,
 ) -> Result<String, RecordedModelError> {
-    let model = Setup::new(told, choices)
+    let model = Setup::new(from_log, choices)
         .train(entry, axes, date)
-        .map_err(|error| not_told(machine, &error))?;
+        .map_err(|error| not_determined(machine, &error))?;
     Ok(model.text())
 }
 
@@ -240,11 +245,11 @@ pub fn recorded_machine(
     seed: u64,
     watch: &dyn Watch,
 ) -> Result<(Machine, Vec<String>), RecordedModelError> {
-    let told = told_machine(machine, axes, seed, 0, watch)?;
-    let read = Machine::parse("the machine file of the log", &told.text);
+    let from_log = machine_from_log(machine, axes, seed, 0, watch)?;
+    let read = Machine::parse("the machine file of the log", &from_log.text);
     Ok((
-        read.map_err(|error| not_told(machine, &error))?,
-        told.doubts,
+        read.map_err(|error| not_determined(machine, &error))?,
+        from_log.warnings,
     ))
 }
 
@@ -261,9 +266,14 @@ fn fitting_machines(
     number: usize,
     watch: &dyn Watch,
 ) -> Result<Vec<Machine>, RecordedModelError> {
-    let told = told_machine(machine, axes, seed, number, watch)?;
+    let from_log = machine_from_log(machine, axes, seed, number, watch)?;
     let read = |text: &String| Machine::parse("a machine file of the log", text).ok();
-    Ok(told.fitting.iter().filter_map(read).take(number).collect())
+    Ok(from_log
+        .fitting
+        .iter()
+        .filter_map(read)
+        .take(number)
+        .collect())
 }
 
 /// Computes again what is shipped with the program for a built-in machine: the machine identified
@@ -279,9 +289,9 @@ pub fn built_in_lines(
     date: String,
     watch: &dyn Watch,
 ) -> Result<Vec<String>, RecordedModelError> {
-    let told = Told::identified(machine, axes, BUILT_IN_SEED, watch)?;
-    let found = Machine::parse("the machine file of the log", &told.text)
-        .map_err(|error| not_told(machine, &error))?;
+    let from_log = FromLog::identified(machine, axes, BUILT_IN_SEED, watch)?;
+    let found = Machine::parse("the machine file of the log", &from_log.text)
+        .map_err(|error| not_determined(machine, &error))?;
     let choices = Choices {
         seed: BUILT_IN_SEED,
         tries: true,
@@ -289,13 +299,13 @@ pub fn built_in_lines(
     };
     let mut lines = vec![built_in::line(
         &content(machine, axes, BUILT_IN_SEED),
-        &told,
+        &from_log,
     )];
     // A log that identifies a machine need not give a model: each cut then reports that.
     if let Ok(text) = trained(machine, &found, axes, (entry, &choices), date) {
-        let model = Told {
+        let model = FromLog {
             text,
-            doubts: told.doubts,
+            warnings: from_log.warnings,
             fitting: vec![],
         };
         lines.push(built_in::line(
@@ -328,15 +338,15 @@ fn log_content(machine: &Machine) -> Value {
 
 /// Returns the machine from the log and at least `fitting` others that fit as well: shipped with
 /// the program, kept, or identified.
-fn told_machine(
+fn machine_from_log(
     machine: &Machine,
     axes: usize,
     seed: u64,
     fitting: usize,
     watch: &dyn Watch,
-) -> Result<Told, RecordedModelError> {
-    Told::of(&content(machine, axes, seed), fitting, || {
-        Told::identified(machine, axes, seed, watch)
+) -> Result<FromLog, RecordedModelError> {
+    FromLog::of(&content(machine, axes, seed), fitting, || {
+        FromLog::identified(machine, axes, seed, watch)
     })
 }
 
@@ -357,13 +367,15 @@ fn identified(
     let excitation = excitation_program(&recorder, ExciteOptions::default());
     let program = Program::from_text(
         "excite.ngc",
-        excitation.map_err(|error| not_told(machine, &error))?.text,
+        excitation
+            .map_err(|error| not_determined(machine, &error))?
+            .text,
     );
     let text = match axes {
         2 => recorded_log::<2>(&recorder, &program),
         _ => recorded_log::<3>(&recorder, &program),
     };
-    let text = text.map_err(|error| not_told(machine, &error))?;
+    let text = text.map_err(|error| not_determined(machine, &error))?;
     let name = Path::new("the log of excite");
     let read = |watch: &dyn Watch| {
         Log::from_reader(
@@ -376,7 +388,7 @@ fn identified(
     };
     let log = steps
         .filled(RECORD_SHARE, read)
-        .map_err(|error| not_told(machine, &error))?;
+        .map_err(|error| not_determined(machine, &error))?;
     let facts = AxisFacts {
         record_delay_s: Some(0.0),
         ..AxisFacts::default()
@@ -390,24 +402,24 @@ fn identified(
         .filled(1.0, |watch| job.run(log, watch))
         .map_err(|error| match error {
             LogJobError::Cancelled(cancelled) => RecordedModelError::Cancelled(cancelled),
-            error => not_told(machine, &error),
+            error => not_determined(machine, &error),
         })
 }
 
-fn not_told(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
+fn not_determined(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
     let reasons = cause
         .related()
         .into_iter()
         .flatten()
         .map(|reason| format!("; {reason}"));
-    RecordedModelError::NotTold {
+    RecordedModelError::NotDetermined {
         machine: machine.name.clone(),
         cause: format!("{cause}{}", reasons.collect::<String>()),
     }
 }
 
 /// Returns the axes whose model is open or not good enough for a correction.
-fn doubts(identified: &LogIdentified) -> Vec<String> {
+fn warnings(identified: &LogIdentified) -> Vec<String> {
     let is_sound = |verdict| {
         matches!(
             verdict,
@@ -449,10 +461,11 @@ mod tests {
         for (name, _) in BUILT_IN_MACHINES {
             let machine = Machine::load(name.as_ref()).unwrap();
             for axes in [2, 3] {
-                logs +=
-                    usize::from(built_in::told(&content(&machine, axes, BUILT_IN_SEED)).is_some());
+                logs += usize::from(
+                    built_in::from_log(&content(&machine, axes, BUILT_IN_SEED)).is_some(),
+                );
                 models += usize::from(
-                    built_in::told(&model_content(&machine, axes, (entry, &choices))).is_some(),
+                    built_in::from_log(&model_content(&machine, axes, (entry, &choices))).is_some(),
                 );
             }
         }

@@ -29,7 +29,7 @@ fn refuses<S: AsRef<OsStr> + std::fmt::Debug>(folder: &Folder, arguments: &[S], 
 }
 
 #[test]
-fn a_program_that_is_none() {
+fn a_file_that_is_not_a_program() {
     let folder = Folder::new();
     folder.file("binary.ngc", b"G21\n\0\x01\x02G1");
     folder.file("empty.ngc", "");
@@ -163,7 +163,7 @@ fn a_program_with_a_mistake() {
 }
 
 #[test]
-fn all_mistakes_of_a_program_are_told_in_one_go() {
+fn all_mistakes_of_a_program_are_reported_in_one_go() {
     let folder = Folder::new();
     folder.file(
         "many.ngc",
@@ -181,7 +181,7 @@ fn all_mistakes_of_a_program_are_told_in_one_go() {
 }
 
 #[test]
-fn a_machine_that_is_none() {
+fn a_file_that_is_not_a_machine() {
     let folder = Folder::new();
     machine(
         &folder,
@@ -597,7 +597,7 @@ fn a_job_that_fails_at_the_end_leaves_the_files_that_were_there() {
 }
 
 #[test]
-fn arguments_that_are_none() {
+fn arguments_that_do_not_exist() {
     let folder = Folder::new();
     for (arguments, says) in [
         (&[][..], &["Usage"][..]),
@@ -847,13 +847,13 @@ fn a_wrong_input_is_found_before_anything_is_identified() {
             &["a web page (HTML)"],
         ),
     ];
-    for (arguments, told) in cases {
+    for (arguments, reported) in cases {
         let mut command = folder.command();
         command
             .env("FEEDWRIGHT_CACHE", "kept")
             .args(arguments)
             .args(["--machine", "own.toml"]);
-        Ran::from(command.output().unwrap()).refused(told);
+        Ran::from(command.output().unwrap()).refused(reported);
         assert!(!folder.path().join("kept").exists(), "{arguments:?}");
     }
 }

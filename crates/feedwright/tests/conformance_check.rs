@@ -139,7 +139,7 @@ fn a_file_named_twice_is_checked_once() {
 }
 
 #[test]
-fn every_dialect_can_be_chosen_and_is_told() {
+fn every_dialect_can_be_chosen_and_is_reported() {
     let folder = Folder::new();
     // M200 is the machine's own to Fanuc and a printer's to Marlin, and unknown to LinuxCNC.
     folder.file("own.ngc", "G21 F600 S100 M3\nM200\nG1 X1\nM30\n");
@@ -161,15 +161,15 @@ fn every_dialect_can_be_chosen_and_is_told() {
                 continue;
             }
             let ran = ran.succeeded();
-            let told = if command == "check" {
+            let reported = if command == "check" {
                 &ran.stdout
             } else {
                 &ran.stderr
             };
             // Fanuc and Haas go on to mill or lathe.
-            let is_told =
-                told.contains(&format!("read as {dialect}")) && told.contains(": as was asked for");
-            assert!(is_told, "{command} {name}: {ran:?}");
+            let is_reported = reported.contains(&format!("read as {dialect}"))
+                && reported.contains(": as was asked for");
+            assert!(is_reported, "{command} {name}: {ran:?}");
         }
     }
     let ran = folder
@@ -202,7 +202,7 @@ fn every_dialect_can_be_chosen_and_is_told() {
 }
 
 #[test]
-fn a_dialect_that_is_none_is_refused() {
+fn an_unknown_dialect_is_refused() {
     let folder = Folder::new();
     for command in ["check", "canon", "run"] {
         let says = [

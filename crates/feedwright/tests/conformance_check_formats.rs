@@ -143,7 +143,7 @@ fn subroutines_are_found_in_the_folders_that_are_named() {
 
 /// A tool table is no program, but its mistakes are reported in the requested format, too.
 #[test]
-fn a_faulty_tool_table_is_told_in_every_format() {
+fn a_faulty_tool_table_is_reported_in_every_format() {
     let folder = folder();
     folder.file("bad.tbl", "T1 P1 D6\nT2 P2 Dx\n");
     for (table, line, code) in [("bad.tbl", 2, "gcode::tool_table"), ("none.tbl", 0, "file")] {

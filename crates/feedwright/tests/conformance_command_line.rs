@@ -143,7 +143,7 @@ fn a_dash_is_the_standard_output_wherever_a_file_is_written() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_behind_the_standard_output_is_told() {
+fn a_full_disk_behind_the_standard_output_is_reported() {
     let folder = Folder::new();
     let full = || {
         std::fs::File::options()
@@ -248,7 +248,7 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
         "uncut um",
         "assumed: the machine is tnv40 (built in",
     ] {
-        assert!(ran.told().contains(says), "{says}: {}", ran.stdout);
+        assert!(ran.reported().contains(says), "{says}: {}", ran.stdout);
     }
     let narrow = Ran::from(
         folder
@@ -269,7 +269,7 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
 fn colours_come_where_they_are_asked_for_and_a_dumb_terminal_gets_ascii() {
     let folder = Folder::new();
     folder.file("bad.ngc", "G1 X10 G555 F100\n");
-    let told = |arguments: &[&str], variables: &[(&str, &str)]| {
+    let reported = |arguments: &[&str], variables: &[(&str, &str)]| {
         let output = folder
             .command()
             .args(arguments)
@@ -278,17 +278,17 @@ fn colours_come_where_they_are_asked_for_and_a_dumb_terminal_gets_ascii() {
             .unwrap();
         Ran::from(output).stderr
     };
-    assert!(!told(&["check", "bad.ngc"], &[]).contains('\u{1b}'));
+    assert!(!reported(&["check", "bad.ngc"], &[]).contains('\u{1b}'));
     assert!(
-        told(
+        reported(
             &["check", "bad.ngc", "--color", "always"],
             &[("NO_COLOR", "1")]
         )
         .contains('\u{1b}')
     );
-    assert!(told(&["--color=always", "run"], &[]).contains('\u{1b}'));
-    assert!(!told(&["check", "bad.ngc", "--color", "never"], &[]).contains('\u{1b}'));
-    let dumb = told(&["check", "bad.ngc"], &[("TERM", "dumb")]);
+    assert!(reported(&["--color=always", "run"], &[]).contains('\u{1b}'));
+    assert!(!reported(&["check", "bad.ngc", "--color", "never"], &[]).contains('\u{1b}'));
+    let dumb = reported(&["check", "bad.ngc"], &[("TERM", "dumb")]);
     assert!(dumb.is_ascii() && dumb.contains("G555"), "{dumb}");
 }
 
@@ -364,14 +364,14 @@ fn the_help_is_short_and_all_options_are_one_option_away() {
         );
     }
     let all = folder.run(&["run", "--help-all"]).succeeded().stdout;
-    for told in [
+    for reported in [
         "--exact-settings",
         "--max-idle-lines",
         "Machine and cut:",
         "Controller:",
         "Results:",
     ] {
-        assert!(all.contains(told), "{told}\n{all}");
+        assert!(all.contains(reported), "{reported}\n{all}");
     }
     assert!(
         !folder
@@ -588,11 +588,11 @@ fn what_is_kept_is_shown_and_removed() {
     let model = format!("kept/aa/{}.json", "a".repeat(64));
     folder.file(&model, [b'x'; 250_000]);
     folder.file("kept/mine.json", "{}");
-    let told = cache(&[], "kept");
+    let reported = cache(&[], "kept");
     assert!(
-        told.starts_with("kept\n")
-            && told.contains("1 identified model, 250 kB of at most 67109 kB"),
-        "{told}"
+        reported.starts_with("kept\n")
+            && reported.contains("1 identified model, 250 kB of at most 67109 kB"),
+        "{reported}"
     );
     assert!(cache(&["--clear"], "kept").contains("removed 1 identified model from kept"));
     assert!(!folder.path().join(&model).exists() && folder.path().join("kept/mine.json").exists());
@@ -641,7 +641,7 @@ fn what_a_killed_run_left_is_cleaned_up() {
 
 /// Trains the identifier of the paper, once for each cache.
 #[test]
-fn a_damaged_cache_is_found_and_an_empty_name_is_none() {
+fn a_damaged_cache_is_found_and_an_empty_name_turns_it_off() {
     let folder = Folder::new();
     let cut = |cache: &str| {
         let arguments = [
@@ -750,7 +750,7 @@ fn a_built_in_machine_is_written_as_a_file_to_start_from() {
     let ran = folder
         .run(&["machines", "workshop", "--out", "mine.toml"])
         .succeeded();
-    assert!(ran.told().contains("wrote mine.toml"), "{ran:?}");
+    assert!(ran.reported().contains("wrote mine.toml"), "{ran:?}");
     folder.run(&["check", "mine.toml"]).succeeded();
     assert_eq!(
         folder.run(&["machines", "workshop"]).succeeded().stdout,
@@ -803,8 +803,11 @@ fn a_controller_is_shown_with_its_source_its_gains_and_the_units_of_its_paramete
             ],
         ),
     ] {
-        let told = folder.run(&["controllers", name]).succeeded().told();
-        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+        let reported = folder.run(&["controllers", name]).succeeded().reported();
+        assert!(
+            parts.iter().all(|part| reported.contains(part)),
+            "{reported}"
+        );
     }
 }
 
@@ -815,7 +818,7 @@ fn a_rate_of_planning_is_printed_of_programs_that_are_long_enough_for_one() {
         !folder
             .run(&["plan", "circle.ngc"])
             .succeeded()
-            .told()
+            .reported()
             .contains("blocks/s")
     );
     let lines: String = (1..1200)
@@ -826,7 +829,7 @@ fn a_rate_of_planning_is_printed_of_programs_that_are_long_enough_for_one() {
         folder
             .run(&["plan", "long.ngc"])
             .succeeded()
-            .told()
+            .reported()
             .contains("blocks/s")
     );
 }

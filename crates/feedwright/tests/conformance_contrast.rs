@@ -81,7 +81,7 @@ fn ratios_are_those_of_the_standard() {
 }
 
 #[test]
-fn text_and_curves_of_the_report_are_told_from_their_background() {
+fn text_and_curves_of_the_report_stand_out_from_their_background() {
     let css = asset("colors.css");
     check(
         &css,
@@ -97,7 +97,7 @@ fn text_and_curves_of_the_report_are_told_from_their_background() {
 
 /// The scale of the error, from its first color on.
 #[test]
-fn every_colour_of_the_error_is_told_from_the_panel() {
+fn every_colour_of_the_error_stands_out_from_the_panel() {
     let (css, script) = (asset("colors.css"), asset("theme.js"));
     for (name, k) in [("ON_LIGHT", 0), ("ON_DARK", 1)] {
         let list = script
@@ -120,7 +120,7 @@ fn every_colour_of_the_error_is_told_from_the_panel() {
 }
 
 #[test]
-fn text_and_curves_of_the_other_pages_are_told_from_their_background() {
+fn text_and_curves_of_the_other_pages_stand_out_from_their_background() {
     let css = asset("pages.css");
     check(
         &css,

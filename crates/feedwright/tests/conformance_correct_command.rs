@@ -4,7 +4,7 @@ use crate::command::Folder;
 use serde_json::Value;
 
 #[test]
-fn what_is_told_is_that_of_the_file_and_decides_the_tolerance() {
+fn what_is_reported_describes_the_file_and_decides_the_tolerance() {
     let folder = Folder::new();
     let arguments = [
         "correct",
@@ -126,7 +126,7 @@ fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
     ];
     let ran = folder.run(&[&["run"], &run[..]].concat()).succeeded();
     assert!(
-        ran.stdout.contains("\nas exported ") && ran.told().contains("within tolerance"),
+        ran.stdout.contains("\nas exported ") && ran.reported().contains("within tolerance"),
         "{}",
         ran.stdout
     );
@@ -179,7 +179,7 @@ fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
     assert!(
         !folder.path().join("p.ngc").exists() && folder.path().join("line.report.html").exists()
     );
-    for (arguments, told) in [
+    for (arguments, reported) in [
         (
             &["--out", "p.ngc", "--fastest", "--tolerance", "10"][..],
             &["no corrected program", "--fastest", "setpoints"][..],
@@ -206,7 +206,7 @@ fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
     ] {
         folder
             .run(&[&["run", "line.ngc", "--machine", "tnv40"], arguments].concat())
-            .refused(told);
+            .refused(reported);
     }
 }
 
@@ -269,14 +269,18 @@ fn feedrates_are_advised_and_files_are_written() {
     let ran = folder
         .run(&[&base[..], &["5"], &files].concat())
         .succeeded();
-    for told in [
+    for reported in [
         "uncorrected",
         "corrected",
         "lqg-identified",
         "mm/min",
         "wrote a.svg",
     ] {
-        assert!(ran.stdout.contains(told), "{told} in\n{}", ran.stdout);
+        assert!(
+            ran.stdout.contains(reported),
+            "{reported} in\n{}",
+            ran.stdout
+        );
     }
     assert!(
         ran.stdout.lines().all(|line| line.chars().count() <= 80),

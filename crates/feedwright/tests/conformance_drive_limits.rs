@@ -137,7 +137,7 @@ fn a_command_beyond_twice_the_limit_is_not_for_use() {
         "--out",
         "o.csv",
     ]);
-    let said = ran.told();
+    let said = ran.reported();
     assert!(
         said.starts_with("Do not use this command: it asks Y for "),
         "{said}"

@@ -67,7 +67,7 @@ fn every_unit_has_its_row_with_the_durations_of_the_machine_file() {
 }
 
 #[test]
-fn an_axis_that_turns_alone_takes_its_time_and_is_told() {
+fn an_axis_that_turns_alone_takes_its_time_and_is_reported() {
     let folder = Folder::new();
     let program = |turn: &str| format!("G21 G90 F360\nG1 X1\n{turn}\nX0\nM2\n");
     let still = time_s(&folder, &program("M0"), "tnv40");
@@ -98,10 +98,11 @@ fn an_axis_that_turns_alone_takes_its_time_and_is_told() {
     assert!((turned("G0 U400\nG1") - 1.0).abs() < 0.002);
     folder.file("part.ngc", program("A36 C10"));
     let ran = folder.run_uncorrected(&["part.ngc"]).succeeded();
-    let told = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let reported = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        told.contains("part.ngc: line 3: A, C moves; only X, Y and Z are simulated and controlled"),
-        "{told}"
+        reported
+            .contains("part.ngc: line 3: A, C moves; only X, Y and Z are simulated and controlled"),
+        "{reported}"
     );
     assert_eq!(
         folder.run_uncorrected(&["circle.ngc"]).succeeded().stderr,

@@ -12,13 +12,13 @@ fn a_log_of_a_simulated_machine_is_recorded_while_it_cuts_the_program() {
     // its start.
     for (machine, sample_time_s) in [("tnv40", 1e-3), ("workshop", 1e-3), ("stiff", 5e-4)] {
         let folder = Folder::new();
-        let told = folder
+        let reported = folder
             .run(&["excite", "--machine", machine, "--out", "excite.ngc"])
             .succeeded()
             .stdout;
         assert!(
-            told.contains("3 axes, about") && told.contains("wrote excite.ngc"),
-            "{told}"
+            reported.contains("3 axes, about") && reported.contains("wrote excite.ngc"),
+            "{reported}"
         );
         folder.run(&["check", "excite.ngc"]).succeeded();
         // The log has the commands of the drives. If a geometry were compensated, they would differ
@@ -149,14 +149,14 @@ fn what_a_log_leaves_open_is_named_written_as_a_program_and_closed_by_its_log() 
         "mine.json",
         "--excite-next",
     ];
-    let told = folder
+    let reported = folder
         .run(&[&["identify", "one.txt"], &identify[..], &["next.ngc"]].concat())
         .succeeded()
         .stdout;
-    let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    let reported = reported.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        told.contains("what is open would be settled by") && told.contains("reversals"),
-        "{told}"
+        reported.contains("what is open would be settled by") && reported.contains("reversals"),
+        "{reported}"
     );
     let text = std::fs::read_to_string(folder.path().join("next.ngc")).unwrap();
     assert!(
@@ -176,13 +176,14 @@ fn what_a_log_leaves_open_is_named_written_as_a_program_and_closed_by_its_log() 
     );
     log_of_x(&folder, "next.ngc", "two.txt");
     let both = ["identify", "one.txt", "two.txt"];
-    let told = folder
+    let reported = folder
         .run(&[&both, &identify[..], &["again.ngc"]].concat())
         .succeeded()
         .stdout;
     assert!(
-        told.contains("nothing is open that other motion would settle: again.ngc is not written"),
-        "{told}"
+        reported
+            .contains("nothing is open that other motion would settle: again.ngc is not written"),
+        "{reported}"
     );
     assert!(!folder.path().join("again.ngc").exists());
     let refused = folder.run(&[&both, &identify[..], &["two.txt"]].concat());

@@ -45,19 +45,20 @@ fn the_increment_is_an_option_and_its_absence_a_warning() {
 }
 
 #[test]
-fn a_machine_that_is_in_doubt_is_an_error_and_an_option_decides() {
+fn an_unclear_machine_is_an_error_and_an_option_decides() {
     let folder = Folder::new();
     folder.file(
         "part.nc",
         "O1\nG50 S2500\nG0 G43 H1 Z5.\nG1 X20. F100.\nM30\n",
     );
-    let doubt = folder.run(&["check", "part.nc"]);
+    let unclear = folder.run(&["check", "part.nc"]);
     assert!(
-        doubt.stderr.contains("mill or for a lathe?") && doubt.stderr.contains("hint: say which"),
+        unclear.stderr.contains("mill or for a lathe?")
+            && unclear.stderr.contains("hint: say which"),
         "{}",
-        doubt.stderr
+        unclear.stderr
     );
-    assert!(doubt.stdout.is_empty(), "{}", doubt.stdout);
+    assert!(unclear.stdout.is_empty(), "{}", unclear.stdout);
     let mill = folder.run(&["check", "part.nc", "--dialect", "fanuc-mill"]);
     assert!(
         mill.stdout

@@ -36,19 +36,23 @@ fn number(ran: &Ran, before: &str) -> f64 {
 }
 
 #[test]
-fn it_tells_time_bound_error_and_what_binds() {
+fn it_reports_time_bound_error_and_what_binds() {
     let folder = folder("");
     let ran = fastest(&folder, &["--tolerance", "50"]).succeeded();
     let (time_s, error_um) = (number(&ran, "least time: "), number(&ran, "largest error "));
     assert!(error_um <= 50.0 && time_s >= 12.56 / 20.0, "{}", ran.stdout);
-    for told in [
+    for reported in [
         "s for a tool without error, motion ",
         "um are the path's",
         "feedrate ",
         "% of the motion",
         "within tolerance",
     ] {
-        assert!(ran.told().contains(told), "{told} in {}", ran.stdout);
+        assert!(
+            ran.reported().contains(reported),
+            "{reported} in {}",
+            ran.stdout
+        );
     }
     assert!(
         folder
@@ -73,7 +77,7 @@ fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
 /// The tool is about 12 um off at any speed with 20 um of encoder noise. The search notices that
 /// before it slows down.
 #[test]
-fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_is_written() {
+fn what_no_speed_brings_within_the_tolerance_is_reported_with_its_line_and_nothing_is_written() {
     let folder = folder("encoder_noise_um = 20\n");
     folder.file(
         "small.ngc",
@@ -98,7 +102,7 @@ fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_i
 }
 
 #[test]
-fn it_needs_a_tolerance_and_tells_which_limits_of_the_axes_it_assumes() {
+fn it_needs_a_tolerance_and_reports_which_limits_of_the_axes_it_assumes() {
     let folder = folder("");
     let run = |arguments: &[&str]| {
         folder.run_uncorrected(&[&["circle.ngc", "--fastest"], arguments].concat())

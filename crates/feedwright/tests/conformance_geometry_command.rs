@@ -40,19 +40,19 @@ fn a_ball_bar_becomes_a_geometry_file_and_a_compensation_file() {
         "--comp-type",
         "1",
     ];
-    let told = folder.run(&arguments).succeeded().stdout;
+    let reported = folder.run(&arguments).succeeded().stdout;
     assert!(
-        told.contains("scale x")
-            && told.contains("backlash x")
-            && told.contains("wrote g.toml")
-            && told.contains("wrote x.comp"),
-        "{told}"
+        reported.contains("scale x")
+            && reported.contains("backlash x")
+            && reported.contains("wrote g.toml")
+            && reported.contains("wrote x.comp"),
+        "{reported}"
     );
     let found = GeometryFile::read(&folder.path().join("g.toml")).unwrap();
     assert!(
         (found.axes[0].scale_um_m - 20.0).abs() < 0.5
             && (found.axes[0].backlash_um - 3.0).abs() < 0.05,
-        "{told}"
+        "{reported}"
     );
     assert_eq!(
         (found.origin.date.as_str(), found.origin.source.as_str()),

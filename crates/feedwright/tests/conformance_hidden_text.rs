@@ -188,7 +188,7 @@ fn machine_files_command_nothing() {
 
 /// The caret stands below its fault, whatever is hidden before it.
 #[test]
-fn the_place_of_a_fault_is_that_of_the_text_that_is_shown() {
+fn the_place_of_a_fault_is_its_place_in_the_text_that_is_shown() {
     let folder = Folder::new();
     folder.file(
         "m.toml",
@@ -326,13 +326,14 @@ fn a_standard_output_without_room_is_named() {
             .unwrap(),
     );
     assert_eq!(ran.code, Some(2), "{ran:?}");
-    let told = ran.remarked();
+    let reported = ran.remarked();
     assert!(
-        told.contains("cannot write the standard output: No space left on device"),
-        "{told}"
+        reported.contains("cannot write the standard output: No space left on device"),
+        "{reported}"
     );
     assert!(
-        told.contains("make room where the standard output goes") && !told.contains("room in ,"),
-        "{told}"
+        reported.contains("make room where the standard output goes")
+            && !reported.contains("room in ,"),
+        "{reported}"
     );
 }

@@ -67,7 +67,7 @@ fn files_hold_what_they_promise() {
 }
 
 #[test]
-fn what_tells_no_model_is_refused_with_the_reason() {
+fn what_determines_no_model_is_refused_with_the_reason() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let good = log_of(&machine, 4.0, 0.0, 9);
     let refused = |log, job: LogJob| match job.run(log, &()).unwrap_err() {

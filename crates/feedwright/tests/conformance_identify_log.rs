@@ -83,7 +83,7 @@ fn logs_become_a_machine_file_numbers_and_a_page() {
 }
 
 #[test]
-fn an_update_keeps_what_the_log_does_not_tell() {
+fn an_update_keeps_what_the_log_does_not_determine() {
     let folder = Folder::new();
     folder.file("a.csv", text(HEAD, rows(3)));
     let before = "base = \"tnv40\"\nname = \"mine\"\n\n[axis.x]\nkp_1_s = 80 # a guess\ntorque_limit_nm = 17 # as on its plate\n\n[axis.y]\nkp_1_s = 44\n";

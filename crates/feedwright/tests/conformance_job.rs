@@ -202,7 +202,7 @@ impl Watch for Ending {
 }
 
 #[test]
-fn a_job_tells_its_stages_and_never_more_than_their_steps() {
+fn a_job_reports_its_stages_and_never_more_than_their_steps() {
     let watch = Ending::after(u64::MAX);
     job("tnv40", "two-dimensional").run(&watch).unwrap();
     let stages = watch.stages.into_inner().unwrap();
@@ -228,7 +228,7 @@ fn a_job_tells_its_stages_and_never_more_than_their_steps() {
 }
 
 #[test]
-fn a_job_ends_when_it_is_told_to() {
+fn a_job_ends_when_it_is_canceled() {
     // In the cut of the first, of the second, and before anything.
     for after in [300, 1300, 0] {
         let ended = job("tnv40", "feedforward")

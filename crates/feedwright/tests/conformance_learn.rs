@@ -113,14 +113,14 @@ fn a_program_learns_from_the_log_of_the_original_and_a_good_one_is_kept() {
     let (ran, results) = correct(&folder, &["cut.csv"], "p1.ngc");
     let (ran, results) = (ran.succeeded(), results.unwrap());
     assert!(
-        !ran.told().contains(" took "),
+        !ran.reported().contains(" took "),
         "the control was as fast as planned: {}",
         ran.stdout
     );
-    let told = ran.told();
+    let reported = ran.reported();
     assert!(
-        told.contains("cut.csv original 1") && told.contains("in the next cut"),
-        "{told}"
+        reported.contains("cut.csv original 1") && reported.contains("in the next cut"),
+        "{reported}"
     );
     crate::json_keys::hold("correct", &results);
     let (learned_um, samples) = cut(&folder, "p1.ngc");
@@ -150,7 +150,7 @@ fn a_program_learns_from_the_log_of_the_original_and_a_good_one_is_kept() {
         assert!(cut(&folder, "p2.ngc").0 <= learned_um, "{}", ran.stdout);
     } else {
         assert!(
-            ran.told()
+            ran.reported()
                 .contains("the corrected program that was cut is as good"),
             "{}",
             ran.stdout
@@ -159,7 +159,7 @@ fn a_program_learns_from_the_log_of_the_original_and_a_good_one_is_kept() {
 }
 
 #[test]
-fn a_log_that_tells_nothing_is_refused_with_place_value_limit_and_remedy() {
+fn a_log_that_shows_nothing_is_refused_with_place_value_limit_and_remedy() {
     let folder = Folder::new();
     folder.file("file.toml", FILE);
     folder.file("circle.ngc", PART);

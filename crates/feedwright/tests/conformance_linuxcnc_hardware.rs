@@ -62,11 +62,13 @@ fn an_unknown_driver_is_not_simulated_and_is_disconnected() {
     assert_eq!(plain.code, Some(1));
     assert!(
         plain
-            .told()
+            .reported()
             .contains("setup does not know whether mydrive.0.position-fb is a measured position"),
         "{plain:?}"
     );
-    let simulated = setup(&folder, &["--simulate", "tnv40"]).succeeded().told();
+    let simulated = setup(&folder, &["--simulate", "tnv40"])
+        .succeeded()
+        .reported();
     assert!(!simulated.contains("It is simulated"), "{simulated}");
     assert!(
         simulated
@@ -97,10 +99,12 @@ net off@ and2.@.out => not.@.in
 net disable@ not.@.out => mydrive.@.disable";
     let loads = "loadrt mydrive count=3\nloadrt scale count=3\nloadrt mux2 count=3\nloadrt sum2 count=3\nloadrt and2 count=3\nloadrt not count=3";
     let folder = configuration("mm", loads, &joint.replace("net on@", "net on"), "");
-    let told = setup(&folder, &["--simulate", "tnv40"]).succeeded().told();
+    let printed = setup(&folder, &["--simulate", "tnv40"])
+        .succeeded()
+        .reported();
     assert!(
-        told.contains("mydrive.1: disable (from not.1.out, set to 1), speed (from mux2.1.out)"),
-        "{told}"
+        printed.contains("mydrive.1: disable (from not.1.out, set to 1), speed (from mux2.1.out)"),
+        "{printed}"
     );
     assert_eq!(lines_with(&folder, ".speed"), [""; 0]);
     assert_eq!(
@@ -128,14 +132,17 @@ fn a_driver_beside_a_loopback_is_hardware_too() {
         joint,
         rest,
     );
-    let told = setup(&folder, &["--simulate", "tnv40"]).succeeded().told();
+    let printed = setup(&folder, &["--simulate", "tnv40"])
+        .succeeded()
+        .reported();
     assert!(
-        told.contains("drv-0.cmd takes the position, the command is its own feedback"),
-        "{told}"
+        printed.contains("drv-0.cmd takes the position, the command is its own feedback"),
+        "{printed}"
     );
     assert!(
-        told.contains("drv-2: cmd (from joint.2.motor-pos-cmd), velocity (from joint.2.vel-cmd)"),
-        "{told}"
+        printed
+            .contains("drv-2: cmd (from joint.2.motor-pos-cmd), velocity (from joint.2.vel-cmd)"),
+        "{printed}"
     );
     for pin in [
         "drv-0.",
@@ -173,10 +180,12 @@ net fb@ dev.@.angle => pid.@.feedback joint.@.motor-pos-fb
 net out@ pid.@.output => dev.@.torque
 net en@ joint.@.amp-enable-out => pid.@.enable dev.@.run";
     let folder = configuration("mm", "loadrt pid num_chan=3\nloadrt dev", joint, "");
-    let told = setup(&folder, &["--simulate", "tnv40"]).succeeded().told();
+    let printed = setup(&folder, &["--simulate", "tnv40"])
+        .succeeded()
+        .reported();
     assert!(
-        told.contains("dev.0: run (from joint.0.amp-enable-out), torque (from pid.0.output)"),
-        "{told}"
+        printed.contains("dev.0: run (from joint.0.amp-enable-out), torque (from pid.0.output)"),
+        "{printed}"
     );
     assert_eq!(
         lines_with(&folder, "dev.0."),
@@ -211,7 +220,7 @@ fn what_cannot_be_disconnected_is_refused_and_nothing_is_written() {
         let before = folder.content();
         let ran = setup(&folder, &["--simulate", "tnv40"]);
         assert_eq!(ran.code, Some(1), "{rest}");
-        assert!(ran.told().contains(said), "{ran:?}");
+        assert!(ran.reported().contains(said), "{ran:?}");
         assert_eq!(folder.content(), before);
     }
     for (line, said) in [
@@ -232,7 +241,10 @@ fn what_cannot_be_disconnected_is_refused_and_nothing_is_written() {
                 .replace("HALFILE = m.hal\n", &format!("HALFILE = m.hal\n{line}\n")),
         );
         let ran = setup(&folder, &["--simulate", "tnv40"]);
-        assert!(ran.code == Some(1) && ran.told().contains(said), "{ran:?}");
+        assert!(
+            ran.code == Some(1) && ran.reported().contains(said),
+            "{ran:?}"
+        );
     }
 }
 
@@ -256,13 +268,13 @@ fn gains_of_an_analog_servo_give_no_lag() {
         ("inch", &pwm),
     ] {
         let folder = configuration(unit, "loadrt pid num_chan=3\nloadrt hostmot2", joint, "");
-        let told = setup(&folder, &[]).succeeded().told();
-        assert!(!told.contains("set FERROR"), "{told}");
+        let printed = setup(&folder, &[]).succeeded().reported();
+        assert!(!printed.contains("set FERROR"), "{printed}");
         assert!(
-            told.contains(
+            printed.contains(
                 "how far these drives are behind is not known before they are identified"
             ),
-            "{told}"
+            "{printed}"
         );
         let machine = folder.text("m-feedwright.toml");
         assert!(
@@ -281,10 +293,11 @@ fn gains_of_an_analog_servo_give_no_lag() {
 fn gains_in_front_of_a_step_generator_give_a_lag() {
     let joint = ANALOG.replace("OUTPUT", "hm2_7i97.0.stepgen.0@.velocity-cmd");
     let folder = configuration("mm", "loadrt pid num_chan=3\nloadrt hostmot2", &joint, "");
-    let told = setup(&folder, &[]).succeeded().told();
+    let printed = setup(&folder, &[]).succeeded().reported();
     assert!(
-        told.contains("[JOINT_2] set FERROR = 25.14 and MIN_FERROR = 25.13 mm (now 0.5 and 0.1)"),
-        "{told}"
+        printed
+            .contains("[JOINT_2] set FERROR = 25.14 and MIN_FERROR = 25.13 mm (now 0.5 and 0.1)"),
+        "{printed}"
     );
     assert!(
         folder
@@ -297,14 +310,14 @@ fn gains_in_front_of_a_step_generator_give_a_lag() {
 fn a_following_error_is_raised_to_the_value_that_the_user_names() {
     let joint = ANALOG.replace("OUTPUT", "hm2_7i97.0.pwmgen.0@.value");
     let folder = configuration("mm", "loadrt pid num_chan=3\nloadrt hostmot2", &joint, "");
-    let told = setup(&folder, &["--raise-ferror", "0.3"])
+    let printed = setup(&folder, &["--raise-ferror", "0.3"])
         .succeeded()
-        .told();
+        .reported();
     assert!(
-        told.contains(
+        printed.contains(
             "the copy allows a following error of 0.3 mm in [JOINT_0], [JOINT_1], [JOINT_2]"
         ),
-        "{told}"
+        "{printed}"
     );
     let ini = folder.text("m-feedwright.ini");
     assert_eq!(

@@ -97,24 +97,24 @@ fn a_log_in_another_unit_than_it_is_read_in_is_refused() {
     folder.file("log.txt", cut(&folder, NAMED, "", INCH_MM, None));
     let ran = folder.run_uncorrected(&RUN);
     assert_eq!(ran.code, Some(2));
-    let told = unframed(&ran);
+    let reported = unframed(&ran);
     assert!(
-        told.contains("The log is in inch") && told.contains("--columns unit=inch"),
-        "{told}"
+        reported.contains("The log is in inch") && reported.contains("--columns unit=inch"),
+        "{reported}"
     );
     folder.file("log.txt", cut(&folder, NAMED, "# unit = inch\n", 1.0, None));
-    let told = unframed(&folder.run_uncorrected(&RUN));
+    let reported = unframed(&folder.run_uncorrected(&RUN));
     assert!(
-        told.contains("The log is in mm, and was read in inch"),
-        "{told}"
+        reported.contains("The log is in mm, and was read in inch"),
+        "{reported}"
     );
     let ran = folder.run_uncorrected(&[&RUN[..], &["--columns", "unit=mm"]].concat());
-    let told = unframed(&ran);
+    let reported = unframed(&ran);
     assert!(
-        told.contains(
+        reported.contains(
             "--columns says that positions are in mm, and the file that they are in inch"
         ),
-        "{told}"
+        "{reported}"
     );
 }
 

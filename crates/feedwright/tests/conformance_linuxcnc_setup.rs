@@ -61,7 +61,7 @@ fn what_was_changed_by_hand_is_neither_replaced_nor_removed() {
         .succeeded();
     assert!(
         undone
-            .told()
+            .reported()
             .contains("kept my-feedwright.ini, which was changed by hand"),
         "{undone:?}"
     );
@@ -81,7 +81,7 @@ fn the_copy_is_not_wired_again() {
     let ran = folder.run(&["linuxcnc", "setup", "my-feedwright.ini"]);
     assert_eq!(ran.code, Some(1));
     assert!(
-        ran.told()
+        ran.reported()
             .contains("give setup the original INI file, not the copy"),
         "{ran:?}"
     );
@@ -136,7 +136,7 @@ fn ini_files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn every_sample_of_debian_is_wired_or_told_why_not() {
+fn every_sample_of_debian_is_wired_or_refused_with_the_reason() {
     if !Path::new(SAMPLES).is_dir() {
         return missing("LinuxCNC's sample configurations are not installed");
     }

@@ -218,10 +218,10 @@ fn an_axis_that_stands_still_in_the_program_need_not_be_in_the_log() {
         let held_um = compared(&held).0;
         assert!(held_um < expected_um, "{axis}: {held_um} {expected_um}");
         let is_held = |log: &Log, findings: &[LogFinding]| {
-            let (found_um, told) = compared(log);
+            let (found_um, reported) = compared(log);
             assert!(
-                (found_um - held_um).abs() < 1e-6 && told == findings,
-                "{axis}: {found_um} {held_um} {told:?}"
+                (found_um - held_um).abs() < 1e-6 && reported == findings,
+                "{axis}: {found_um} {held_um} {reported:?}"
             );
         };
         is_held(&alone(["x", "y"][i], vec![]), std::slice::from_ref(&still));
@@ -239,13 +239,13 @@ fn an_axis_that_stands_still_in_the_program_need_not_be_in_the_log() {
             torque_unit: TorqueUnit::Unknown,
             by_data: true,
         };
-        let mut told = vec![still];
+        let mut reported = vec![still];
         if i == 1 {
-            told.push(LogFinding::TakenFor {
+            reported.push(LogFinding::TakenFor {
                 axis: "x".to_owned(),
                 program: "y".to_owned(),
             });
         }
-        is_held(&alone("x", vec![guessed]), &told);
+        is_held(&alone("x", vec![guessed]), &reported);
     }
 }

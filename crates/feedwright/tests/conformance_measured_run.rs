@@ -71,14 +71,14 @@ fn an_axis_that_stands_still_needs_no_columns() {
     );
     assert!(named_um > 0.1, "what x swings by is in it: {named_um}");
     let (bare_um, ran) = measured("bare.csv");
-    let told = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    let reported = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        told.contains("x of the log is taken for y of the program"),
-        "{told}"
+        reported.contains("x of the log is taken for y of the program"),
+        "{reported}"
     );
     assert!(
-        told.contains("axis x stands still in the program, and the log has no record of it"),
-        "{told}"
+        reported.contains("axis x stands still in the program, and the log has no record of it"),
+        "{reported}"
     );
     assert!(bare_um < named_um, "{bare_um} {named_um}");
 }

@@ -69,7 +69,7 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
 /// cuts bands.
 #[test]
 #[expect(clippy::too_many_lines, reason = "one identification serves all")]
-fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() {
+fn a_run_without_a_model_uses_what_a_log_of_the_machine_determines_and_keeps_it() {
     let folder = Folder::new();
     folder.file("mine.toml", "base = \"workshop\"\nname = \"mine\"\n");
     let cut = [
@@ -270,11 +270,14 @@ fn what_was_learned_of_a_machine_that_differs_from_its_model_is_written() {
     {
         assert!((gain_1_s / 45.0 - 1.0).abs() < 0.05, "{gains}");
     }
-    let told = folder
+    let reported = folder
         .run(&["check", "learned.model.toml"])
         .succeeded()
         .stdout;
-    assert!(told.contains("learned while slow cut star.ngc"), "{told}");
+    assert!(
+        reported.contains("learned while slow cut star.ngc"),
+        "{reported}"
+    );
 }
 
 #[test]
@@ -378,10 +381,10 @@ fn the_same_identification_writes_the_same_bytes() {
         text.contains("source = \"simulated excitation of heavy, seed 1\""),
         "{text}"
     );
-    let told = folder.run(&["check", "1.model.toml"]).succeeded().stdout;
+    let reported = folder.run(&["check", "1.model.toml"]).succeeded().stdout;
     assert!(
-        told.contains("axes model, 3 axes, simulated excitation of heavy, seed 1"),
-        "{told}"
+        reported.contains("axes model, 3 axes, simulated excitation of heavy, seed 1"),
+        "{reported}"
     );
 }
 
@@ -436,7 +439,7 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
             "--machine",
             "half.toml",
         ],
-        &["a servo period of 0.001 s, and that of the machine is 0.0005 s"],
+        &["a servo period of 0.001 s, and the machine has 0.0005 s"],
     );
     refused(
         &[
@@ -535,12 +538,12 @@ fn what_was_found_of_each_axis_is_shown_with_standard_errors() {
         "--out",
         "m.model.toml",
     ];
-    let told = folder.run(&command).succeeded().stdout;
+    let reported = folder.run(&command).succeeded().stdout;
     let row = |label: &str| {
-        let line = told
+        let line = reported
             .lines()
             .find(|line| line.starts_with(label))
-            .unwrap_or_else(|| panic!("no {label}: {told}"));
+            .unwrap_or_else(|| panic!("no {label}: {reported}"));
         let numbers = line[label.len()..]
             .split_whitespace()
             .filter_map(|word| word.parse::<f64>().ok());
@@ -552,9 +555,9 @@ fn what_was_found_of_each_axis_is_shown_with_standard_errors() {
         "asymmetry, N m",
         "presliding, um",
     ] {
-        assert_eq!(row(label).len(), 4, "{told}");
+        assert_eq!(row(label).len(), 4, "{reported}");
     }
-    assert_eq!(row("left, um RMS").len(), 2, "{told}");
+    assert_eq!(row("left, um RMS").len(), 2, "{reported}");
     let text = folder.text("m.model.toml");
     let (_, inertia) = text.split_once("inertia_kg_m2 = [").unwrap();
     let inertia = inertia
@@ -566,19 +569,19 @@ fn what_was_found_of_each_axis_is_shown_with_standard_errors() {
     for (stored, shown) in inertia.zip(row("inertia, kg m2").chunks(2)) {
         assert!(
             (stored - shown[0]).abs() < 0.01 * stored && shown[1] < 0.05 * stored,
-            "{told}"
+            "{reported}"
         );
     }
-    let told = folder.run(&["check", "m.model.toml"]).succeeded().stdout;
+    let reported = folder.run(&["check", "m.model.toml"]).succeeded().stdout;
     assert!(
-        told.contains("axes model, 2 axes, simulated excitation of workshop, seed 1"),
-        "{told}"
+        reported.contains("axes model, 2 axes, simulated excitation of workshop, seed 1"),
+        "{reported}"
     );
 }
 
 /// Needs 10 s of processor time: fails only after a whole identification.
 #[test]
-fn axes_that_do_not_show_are_told_of() {
+fn axes_that_do_not_show_are_reported() {
     let folder = Folder::new();
     // Loops that take longer to settle than the excitation lasts.
     let slow = include_str!("../../sim/machines/tnv40.toml").lines();
@@ -634,13 +637,13 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
             "m.model.toml",
         ])
         .succeeded();
-    let told = folder
+    let reported = folder
         .run(&["block", "m.model.toml", "--out", "found.fwmodel"])
         .succeeded()
         .stdout;
     assert!(
-        told.contains("the model of kind 'axes', 2 axes: 660 bytes"),
-        "{told}"
+        reported.contains("the model of kind 'axes', 2 axes: 660 bytes"),
+        "{reported}"
     );
     geometry_of_a_block(&folder);
     axes_that_no_command_follows(&folder);
@@ -690,11 +693,11 @@ fn axes_that_no_command_follows(folder: &Folder) {
             .run(&["block", "fed.toml", "--out", "fed.fwmodel"])
             .succeeded()
             .stdout;
-        let told: Vec<&str> = said
+        let reported: Vec<&str> = said
             .lines()
             .filter_map(|line| line.strip_prefix("axis ")?.get(..1))
             .collect();
-        assert_eq!(told, axes, "{parts:?}: {said}");
+        assert_eq!(reported, axes, "{parts:?}: {said}");
         assert_eq!(said.contains("with cause 11"), !axes.is_empty(), "{said}");
     }
 }
@@ -708,7 +711,7 @@ fn geometry_of_a_block(folder: &Folder) {
         "format = 1\nsource = \"a test\"\n[axis.x]\nstraightness_y = [\n  [-100, 0],\n  [100, 5],\n]\n",
     );
     let none = "geometry: none";
-    for (arguments, told, format) in [
+    for (arguments, reported, format) in [
         (&["workshop"][..], "geometry: scale, pitch, squareness\n", 4),
         (
             &["workshop", "--no-geometry"],
@@ -752,7 +755,7 @@ fn geometry_of_a_block(folder: &Folder) {
             .succeeded()
             .stdout;
         assert!(
-            said.replace("\n  ", " ").contains(told),
+            said.replace("\n  ", " ").contains(reported),
             "{arguments:?}: {said}"
         );
         assert_eq!(folder.read("some.fwmodel")[8], format, "{arguments:?}");

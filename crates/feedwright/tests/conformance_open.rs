@@ -321,11 +321,11 @@ fn without_linuxcnc_there_is_no_machine_to_show() {
         .env("PATH", folder.path())
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&ran.stderr);
+    let reported = String::from_utf8_lossy(&ran.stderr);
     assert!(
         ran.status.code() == Some(2)
-            && told.contains("there is no halcmd")
-            && told.contains("hint: "),
-        "{told}"
+            && reported.contains("there is no halcmd")
+            && reported.contains("hint: "),
+        "{reported}"
     );
 }

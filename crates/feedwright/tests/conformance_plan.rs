@@ -40,7 +40,7 @@ fn planned(folder: &Folder, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn the_cycle_time_is_that_of_its_parts() {
+fn the_cycle_time_is_the_sum_of_its_parts() {
     let folder = folder();
     let found = planned(&folder, &["--machine", "m.toml", "--bound"]);
     let number = |key: &str| {
@@ -242,7 +242,7 @@ fn an_override_and_a_hold_change_the_time_of_the_plan() {
         number(hold, "way_mm") >= 0.99 * number(hold, "least_mm"),
         "{held}"
     );
-    for (wrong, told) in [("-1", "-1"), ("201", "200"), ("NaN", "NaN")] {
+    for (wrong, reported) in [("-1", "-1"), ("201", "200"), ("NaN", "NaN")] {
         folder
             .run(&[
                 "plan",
@@ -252,7 +252,7 @@ fn an_override_and_a_hold_change_the_time_of_the_plan() {
                 "--override",
                 wrong,
             ])
-            .refused(&["--override", told]);
+            .refused(&["--override", reported]);
     }
     folder
         .run(&["plan", "two.ngc", "--machine", "m.toml", "--hold-at", "-1"])

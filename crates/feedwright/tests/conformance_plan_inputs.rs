@@ -166,7 +166,7 @@ fn a_negative_tolerance_is_refused_with_its_place() {
 }
 
 #[test]
-fn limits_that_are_none_are_refused_by_name() {
+fn invalid_limits_are_refused_by_name() {
     let wrong = [
         0.0,
         -1.0,

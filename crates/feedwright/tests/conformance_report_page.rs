@@ -130,7 +130,7 @@ fn the_data_are_the_series() {
 /// The headline says that it is simulated, what it costs and what was assumed; a log has no torque,
 /// in the table nor in the data.
 #[test]
-fn the_headline_tells_the_cost_and_a_log_has_no_torque() {
+fn the_headline_states_the_cost_and_a_log_has_no_torque() {
     let simulated = page(&report(2, 2000));
     for text in [
         ">simulated</span>",

@@ -41,14 +41,14 @@ fn the_exit_code_says_whether_the_part_is_within_tolerance() {
     assert!(
         run(&above)
             .succeeded()
-            .told()
+            .reported()
             .contains("within tolerance: max")
     );
     assert_eq!(results(&folder)["within_tolerance"], true);
     let out = run(&below);
     assert_eq!(out.code, Some(1), "{out:?}");
     assert!(
-        out.told().contains("out of tolerance: max") && out.stdout.contains("um"),
+        out.reported().contains("out of tolerance: max") && out.stdout.contains("um"),
         "{out:?}"
     );
     assert_eq!(results(&folder)["within_tolerance"], false);
@@ -95,7 +95,7 @@ fn the_terminal_begins_with_the_headline_of_the_page() {
         "{headline}"
     );
     assert!(
-        ran.told().starts_with(&headline),
+        ran.reported().starts_with(&headline),
         "{headline}\n{}",
         ran.stdout
     );
@@ -504,7 +504,7 @@ fn a_controller_that_makes_it_worse_is_named() {
     let of = |run: usize, key: &str| results["runs"][run][key].as_f64().unwrap();
     let worse = of(1, "rms_um") > of(0, "rms_um") && of(1, "max_um") > of(0, "max_um");
     assert_eq!(
-        ran.told()
+        ran.reported()
             .contains("two-dimensional is worse than uncorrected"),
         worse,
         "{ran:?}"

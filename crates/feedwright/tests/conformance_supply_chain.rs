@@ -33,8 +33,8 @@ fn texts(value: &toml::Value) -> Vec<String> {
 /// test, so that nothing is fetched.
 fn packages() -> Vec<Value> {
     let rustc = Command::new("rustc").arg("-vV").output().unwrap();
-    let told = String::from_utf8(rustc.stdout).unwrap();
-    let host = told
+    let reported = String::from_utf8(rustc.stdout).unwrap();
+    let host = reported
         .lines()
         .find_map(|line| line.strip_prefix("host: "))
         .unwrap();

@@ -79,8 +79,8 @@ fn figures(mut result: Value) -> Value {
         }
     }
     // The day on which the model was identified.
-    for told in ["/assumed/model_from", "/settings/Model"] {
-        if let Some(Value::String(text)) = result.pointer_mut(told)
+    for reported in ["/assumed/model_from", "/settings/Model"] {
+        if let Some(Value::String(text)) = result.pointer_mut(reported)
             && let Some((before, "0")) = text
                 .rsplit_once(", 2")
                 .map(|(before, date)| (before, &date[..1]))
@@ -355,9 +355,9 @@ fn a_sweep_that_is_killed_keeps_what_was_written_and_goes_on() {
     sweep.wait().unwrap();
     let kept = results(&folder, "all");
     assert!((10..120).contains(&kept.len()), "{}", kept.len());
-    let told = folder.run(&line).succeeded().stdout;
+    let reported = folder.run(&line).succeeded().stdout;
     assert_eq!(
-        told,
+        reported,
         format!(
             "120 jobs: {} computed, {} found\n",
             120 - kept.len(),

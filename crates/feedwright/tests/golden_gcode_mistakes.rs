@@ -15,7 +15,7 @@ const MESSAGE: &str = "```text\n";
 const END: &str = "```\n";
 
 /// Returns the output of `check` for a program, messages first.
-fn told(program: &str) -> String {
+fn reported(program: &str) -> String {
     let folder = Folder::new();
     folder.file("part.ngc", program);
     let ran = folder.run(&["check", "part.ngc"]);
@@ -45,7 +45,7 @@ fn written_anew(document: &str) -> (String, usize) {
             END,
             between,
             MESSAGE,
-            &told(program),
+            &reported(program),
             END,
             after,
         ]

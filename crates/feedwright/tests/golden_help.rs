@@ -51,7 +51,7 @@ fn section() -> String {
 }
 
 #[test]
-fn the_help_in_the_document_is_that_of_the_program() {
+fn the_help_in_the_document_comes_from_the_program() {
     let path = Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../docs/command-line.md"

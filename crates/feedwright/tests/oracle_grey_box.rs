@@ -218,7 +218,7 @@ fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
 
 /// Needs 6 s of processor time: identifies an axis.
 #[test]
-fn what_is_known_stands_where_a_log_does_not_tell_it() {
+fn what_is_known_stands_where_a_log_does_not_determine_it() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     // A constant speed determines only Kp and feedforward together, by the following error.
     let steady: Vec<f64> = (0..6000).map(|k| 0.02 * f64::from(k)).collect();

@@ -356,7 +356,7 @@ fn the_same_seed_gives_the_same_bits_and_others_give_others() {
 /// Errors that no encoder sees change nothing that a controller receives: without them, the joints
 /// of both machines are the same.
 #[test]
-fn the_error_of_the_joints_is_that_of_the_machine_without_its_geometry() {
+fn the_error_of_the_joints_is_the_error_of_the_machine_without_its_geometry() {
     let folder = tempfile::tempdir().unwrap();
     let loops = [("velocity_feedforward", 0.95), ("encoder_noise_um", 0.05)];
     let geometry = [("scale_um_m", 100.0), ("pitch_error_um", 3.0)];

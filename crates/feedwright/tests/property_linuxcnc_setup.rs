@@ -55,7 +55,7 @@ fn damaged(text: &str, damage: &Damage) -> String {
     }
 }
 
-fn are_told_about(name: &str, file: usize, damages: &[Damage]) -> Result<(), TestCaseError> {
+fn are_reported(name: &str, file: usize, damages: &[Damage]) -> Result<(), TestCaseError> {
     let folder = copied(name);
     let is_read = |name: &String| name.ends_with(".hal") || name.ends_with(".ini");
     let files: Vec<String> = crate::golden_linuxcnc_setup::files(folder.path())
@@ -87,13 +87,13 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn damaged_configurations_are_told_about(name in 0..NAMES.len(), file in 0..3_usize, damages in prop::collection::vec(damage(), 1..4)) {
-        are_told_about(NAMES[name], file, &damages)?;
+    fn damaged_configurations_are_reported(name in 0..NAMES.len(), file in 0..3_usize, damages in prop::collection::vec(damage(), 1..4)) {
+        are_reported(NAMES[name], file, &damages)?;
     }
 }
 
 /// A quotation mark without another, in front of a pin that is moved.
 #[test]
-fn damage_that_was_found_is_told_about() {
-    are_told_about("rotary", 2, &[Damage::Insert { at: 2670, sign: 0 }]).unwrap();
+fn damage_that_was_found_is_reported() {
+    are_reported("rotary", 2, &[Damage::Insert { at: 2670, sign: 0 }]).unwrap();
 }

@@ -531,7 +531,7 @@ fn codes_of_other_controls_are_refused_by_what_they_do() {
 }
 
 #[test]
-fn cycles_of_fanuc_are_told_from_those_of_linuxcnc_by_their_words() {
+fn cycles_of_fanuc_are_distinguished_from_those_of_linuxcnc_by_their_words() {
     for cycle in ["G71 U2 R0.5", "G71 P10 Q20", "G72 Q20 W0.1"] {
         let text = format!("G18 G21 G90 F100\n{cycle}\nM2\n");
         let fault = reader(&text, Dialect::LinuxCnc)

@@ -328,7 +328,7 @@ fn a_pocket_is_cut_level_by_level_where_the_first_block_has_x_and_z() {
 }
 
 #[test]
-fn what_is_missing_or_wrong_is_told_by_name() {
+fn what_is_missing_or_wrong_is_reported_by_name() {
     for (lines, says) in [
         (
             "G71 P1 Q2 U0.4 F0.2\nN1 G0 X5.\nN2 G1 Z-5.",

@@ -131,10 +131,10 @@ fn macros_have_variables_of_their_own() {
 
 #[test]
 fn what_a_macro_says_is_kept() {
-    let told = steps("DPRNT[X#1[53]]\nPOPEN\nG1 X1.\nM30")
+    let reported = steps("DPRNT[X#1[53]]\nPOPEN\nG1 X1.\nM30")
         .into_iter()
         .filter(|step| matches!(step, Canon::Event(event) if matches!(event.kind, EventKind::Message { .. })));
-    assert_eq!(told.count(), 2);
+    assert_eq!(reported.count(), 2);
     let alarm = faults(
         "G1 X1.\nIF [1 EQ 1] THEN #3000=5 (NO ARGUMENT)\nM30",
         Settings::default(),

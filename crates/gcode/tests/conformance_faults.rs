@@ -35,7 +35,7 @@ const TABLE: &[(&str, u32, u32, u32, &str)] = &[
         5,
         1,
         5,
-        "the label O1 is that of line 2",
+        "line 2 has the label O1 already",
     ),
     (
         "F100 G91\no1 repeat [2]\nG1 X1\no1 endwhile",
@@ -229,7 +229,7 @@ const HINTS: &[(&str, &[u32], &str)] = &[
 ];
 
 #[test]
-fn hints_help_and_nothing_is_told_that_follows_from_another_fault() {
+fn hints_help_and_nothing_is_reported_that_follows_from_another_fault() {
     for &(text, lines, hint) in HINTS {
         let found = faults(text);
         assert_eq!(
@@ -249,7 +249,7 @@ fn hints_help_and_nothing_is_told_that_follows_from_another_fault() {
 }
 
 #[test]
-fn a_fault_in_a_loop_is_told_once_with_a_count() {
+fn a_fault_in_a_loop_is_reported_once_with_a_count() {
     let found = faults("F100\no1 repeat [50]\nG1 X5 Q7\no1 endrepeat\nG1 X1 Q7");
     assert_eq!(
         found.iter().map(|fault| fault.line).collect::<Vec<_>>(),

@@ -24,7 +24,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[test]
-fn every_motion_of_a_cycle_is_that_of_the_published_rule() {
+fn every_motion_of_a_cycle_follows_the_published_rule() {
     let cases = cases();
     assert!(cases.len() >= 18);
     for case in cases {

@@ -284,7 +284,7 @@ fn a_line_too_short_for_both_its_corners_is_refused_before_an_arc_too() {
 
 /// LinuxCNC's rapids go straight past an outer corner, and the tool cuts into it. The reader warns.
 #[test]
-fn a_rapid_past_an_outer_corner_is_straight_and_told() {
+fn a_rapid_past_an_outer_corner_is_straight_and_reported() {
     let text = "G21 F100\nG0 X-20 Y-30\nG1 G41.1 D5 X0 Y0\nG1 X30 Y0\nG0 X30 Y-20\nG1 X10\nG40 G1 X0 Y-40\nM2\n";
     let mut reader = Reader::from_text("rapid", text, Settings::default()).unwrap();
     let motions: Vec<Motion> = reader

@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn the_quadratic_mean_is_that_of_the_definition() {
+    fn the_quadratic_mean_follows_its_definition() {
         assert_eq!(quadratic_mean([3.0, 4.0, 0.0, 0.0]), 2.5);
         assert!(quadratic_mean([]).is_nan());
         assert_eq!((rms([3.0, 4.0, 0.0, 0.0]), rms([])), (2.5, 0.0));

@@ -111,7 +111,7 @@ const OF_XY: [(&str, f64); 9] = [
 /// Standard deviations cover the truth as those of a normal number: of 360 values 68 % within one,
 /// 95 % within two, each less three standard deviations of such a count.
 #[test]
-fn a_calibrated_ball_bar_tells_everything_in_its_plane_within_its_standard_deviations() {
+fn a_calibrated_ball_bar_determines_everything_in_its_plane_within_its_standard_deviations() {
     let mut within = [0; 2];
     for seed in 1..=40 {
         let found =
@@ -143,7 +143,7 @@ fn a_calibrated_ball_bar_tells_everything_in_its_plane_within_its_standard_devia
 }
 
 #[test]
-fn a_bar_of_unknown_length_tells_the_difference_of_scales_and_says_so() {
+fn a_bar_of_unknown_length_determines_the_difference_of_scales_and_says_so() {
     let found = fit_geometry(sets(&bar_text("xy", false, 0.3, 3), None), SCREWS, "bar").unwrap();
     let ((x, std), (y, _)) = (value(&found, "scale x"), value(&found, "scale y"));
     assert!(
@@ -166,7 +166,7 @@ fn a_bar_of_unknown_length_tells_the_difference_of_scales_and_says_so() {
 }
 
 #[test]
-fn three_planes_and_a_laser_tell_the_whole_geometry() {
+fn three_planes_and_a_laser_determine_the_whole_geometry() {
     let mut all: Vec<MeasuredSet> = ["xy", "xz", "yz"]
         .iter()
         .flat_map(|plane| sets(&bar_text(plane, false, 0.1, 5), None))
@@ -254,7 +254,7 @@ fn a_positioning_table_keeps_what_repeats() {
 }
 
 #[test]
-fn a_test_part_tells_scale_and_squareness_and_the_size_of_the_tool() {
+fn a_test_part_determines_scale_and_squareness_and_the_size_of_the_tool() {
     let mut text = "# center_mm: 100 50\nname,nominal_mm,measured_mm\n".to_owned();
     let part = [
         ("circle_0", 50.0, 0.0, 1.0),
@@ -302,7 +302,7 @@ fn a_test_part_tells_scale_and_squareness_and_the_size_of_the_tool() {
 }
 
 #[test]
-fn a_grid_encoder_tells_scale_squareness_and_backlash() {
+fn a_grid_encoder_determines_scale_squareness_and_backlash() {
     let mut text = "x_mm,y_mm,x_measured_mm,y_measured_mm\n".to_owned();
     let (mut before, mut ways, mut state) = ([0.0; 2], [0.0; 2], 4);
     for row in 0..9 {

@@ -1,7 +1,7 @@
 //! A unit that a log states is converted or refused, never ignored, whether columns are found by
 //! their names or by what they hold.
 
-use crate::logs::{SAMPLES, axis, read, rows, time_s, told};
+use crate::logs::{SAMPLES, axis, read, reported, rows, time_s};
 use feedwright_ident::{LogError, TorqueUnit};
 
 /// Rounding of numbers that were written as text, mm.
@@ -188,9 +188,9 @@ fn known_units_are_converted_where_columns_are_guessed_too() {
                     assert!(worst < ROUNDING_MM, "{header}: {worst} mm");
                 }
                 assert!(
-                    !told(&found).contains("guessed, as the command goes"),
+                    !reported(&found).contains("guessed, as the command goes"),
                     "{header}: {}",
-                    told(&found)
+                    reported(&found)
                 );
             }
         }

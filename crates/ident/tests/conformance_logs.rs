@@ -1,6 +1,6 @@
 //! Every format of logs is recognised by its content, and gives the same log.
 
-use crate::logs::{SAMPLE_S, SAMPLES, axis, file, read, rows, time_s, told};
+use crate::logs::{SAMPLE_S, SAMPLES, axis, file, read, reported, rows, time_s};
 use feedwright_ident::{Columns, Fitness, Log, LogAxis, LogFormat, TorqueUnit};
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
@@ -19,7 +19,7 @@ fn assert_near(what: &str, found: &[f64], expected: &[f64]) {
 
 /// Asserts that the log has this format and holds the one axis that was written.
 fn assert_is(log: &Log, format: LogFormat, (command, actual): &(Vec<f64>, Vec<f64>)) {
-    assert_eq!(log.format, format, "{}", told(log));
+    assert_eq!(log.format, format, "{}", reported(log));
     assert!(
         (log.sample_time_s - SAMPLE_S).abs() < 1e-12,
         "{} s",
@@ -39,7 +39,7 @@ fn assert_is(log: &Log, format: LogFormat, (command, actual): &(Vec<f64>, Vec<f6
     };
     assert_near("command", command_mm, command);
     assert_near("actual position", actual_mm, actual);
-    assert_eq!(*verdict, Fitness::ForControl, "{}", told(log));
+    assert_eq!(*verdict, Fitness::ForControl, "{}", reported(log));
 }
 
 #[test]
@@ -77,14 +77,14 @@ fn a_decimal_comma_is_read() {
     let log = read(text.as_bytes(), "").unwrap();
     assert_is(&log, LogFormat::TextTable, &data);
     assert!(
-        told(&log).contains("positions are in mm: the column says so"),
+        reported(&log).contains("positions are in mm: the column says so"),
         "{}",
-        told(&log)
+        reported(&log)
     );
     assert!(
-        told(&log).contains("time is in s: the column says so"),
+        reported(&log).contains("time is in s: the column says so"),
         "{}",
-        told(&log)
+        reported(&log)
     );
 }
 
@@ -96,11 +96,15 @@ fn columns_without_names_are_found_by_what_they_hold() {
     let log = read(text.as_bytes(), "").unwrap();
     assert_is(&log, LogFormat::TextTable, &(command, actual));
     assert!(
-        told(&log).contains("command in column 3, actual position in column 1; guessed"),
+        reported(&log).contains("command in column 3, actual position in column 1; guessed"),
         "{}",
-        told(&log)
+        reported(&log)
     );
-    assert!(told(&log).contains("not used: column 0"), "{}", told(&log));
+    assert!(
+        reported(&log).contains("not used: column 0"),
+        "{}",
+        reported(&log)
+    );
 }
 
 #[test]
@@ -168,7 +172,7 @@ fn what_columns_cannot_be_is_said() {
 }
 
 #[test]
-fn units_are_guessed_and_told() {
+fn units_are_guessed_and_reported() {
     let data = axis(20.0, 1.0);
     let scaled =
         |values: &[f64], by: f64| values.iter().map(|value| value * by).collect::<Vec<f64>>();
@@ -186,14 +190,14 @@ fn units_are_guessed_and_told() {
             .unwrap();
             assert_is(&log, LogFormat::TextTable, &data);
             assert!(
-                told(&log).contains(&format!("positions are in {unit}: guessed")),
+                reported(&log).contains(&format!("positions are in {unit}: guessed")),
                 "{}",
-                told(&log)
+                reported(&log)
             );
             assert!(
-                told(&log).contains(&format!("time is in {time_unit}: guessed")),
+                reported(&log).contains(&format!("time is in {time_unit}: guessed")),
                 "{}",
-                told(&log)
+                reported(&log)
             );
         }
     }
@@ -221,10 +225,10 @@ fn halsampler_is_read_with_its_overruns() {
         assert_is(&log, LogFormat::Halsampler, &data);
         let guesses = !header.contains("sample_time_s");
         assert_eq!(
-            told(&log).contains("1 ms between samples: guessed"),
+            reported(&log).contains("1 ms between samples: guessed"),
             guesses,
             "{}",
-            told(&log)
+            reported(&log)
         );
         assert_eq!(log.time_s[0], 0.0);
     }
@@ -237,9 +241,9 @@ fn halsampler_is_read_with_its_overruns() {
         (LogFormat::Halsampler, [0..1000, 1000..2995].as_slice())
     );
     assert!(
-        told(&log).contains("a gap of 6 ms from 0.9990 s to 1.0050 s"),
+        reported(&log).contains("a gap of 6 ms from 0.9990 s to 1.0050 s"),
         "{}",
-        told(&log)
+        reported(&log)
     );
     // Without sample numbers only the word `overrun` shows that some are missing.
     let without: Vec<String> = with_gap
@@ -413,7 +417,11 @@ fn sinumerik_edge_is_read_with_its_axes() {
         (log.axes[0].name.as_str(), log.axes[0].torque_unit),
         ("x", TorqueUnit::NewtonMetre)
     );
-    assert!(told(&log).contains("axis c is rotary"), "{}", told(&log));
+    assert!(
+        reported(&log).contains("axis c is rotary"),
+        "{}",
+        reported(&log)
+    );
     for (bad, part) in [
         (
             text.replace("[501,", "[501,7,"),
@@ -439,9 +447,9 @@ fn a_gap_begins_a_new_stretch_and_a_last_line_that_is_cut_off_is_left_out() {
     assert_eq!(log.stretches, [0..1200, 1200..SAMPLES]);
     assert!((log.sample_time_s - SAMPLE_S).abs() < 1e-12);
     assert!(
-        told(&log).contains("line 3001, the last, is cut off"),
+        reported(&log).contains("line 3001, the last, is cut off"),
         "{}",
-        told(&log)
+        reported(&log)
     );
     let error = read(
         (rows(&[&time, &command, &actual], ",") + "3.5,0.0\n4,1,2\n").as_bytes(),
@@ -457,7 +465,7 @@ fn a_gap_begins_a_new_stretch_and_a_last_line_that_is_cut_off_is_left_out() {
 }
 
 #[test]
-fn steps_limits_and_lines_are_told() {
+fn steps_limits_and_lines_are_reported() {
     let time = time_s();
     let (command, mut actual) = axis(20.0, 1.0);
     for (k, position) in actual.iter_mut().enumerate() {
@@ -471,14 +479,14 @@ fn steps_limits_and_lines_are_told() {
     let text = "t,x.cmd,x.act,x.torque [Nm]\n".to_owned()
         + &rows(&[&time, &command, &actual, &torque], ",");
     let log = read(text.as_bytes(), "").unwrap();
-    let told = told(&log);
+    let reported = reported(&log);
     assert_eq!(log.axes[0].step_mm, 0.002);
-    assert!(told.contains("in steps of 2 um"), "{told}");
+    assert!(reported.contains("in steps of 2 um"), "{reported}");
     assert!(
-        told.contains("the torque of x is at its limit of 5 N m"),
-        "{told}"
+        reported.contains("the torque of x is at its limit of 5 N m"),
+        "{reported}"
     );
-    assert!(told.contains("swings at 62"), "{told}");
+    assert!(reported.contains("swings at 62"), "{reported}");
     // A speed limit of 80 mm/s under a command of 126 mm/s.
     let mut limited = vec![0.0_f64];
     for k in 1..SAMPLES {
@@ -487,9 +495,9 @@ fn steps_limits_and_lines_are_told() {
     }
     let log = read(rows(&[&time, &command, &limited], ",").as_bytes(), "").unwrap();
     assert!(
-        crate::logs::told(&log).contains("stays below 80 mm/s, where the command reaches 125"),
+        crate::logs::reported(&log).contains("stays below 80 mm/s, where the command reaches 125"),
         "{}",
-        crate::logs::told(&log)
+        crate::logs::reported(&log)
     );
 }
 
@@ -502,8 +510,16 @@ fn axes_that_stand_still_are_left_out_and_different_zeros_are_taken_out() {
         + &rows(&[&time_s(), &data.0, &shifted, &still, &still], ",");
     let log = read(text.as_bytes(), "").unwrap();
     assert_eq!(log.axes.len(), 1);
-    assert!(told(&log).contains("axis z stands still"), "{}", told(&log));
-    assert!(told(&log).contains("differ by -1"), "{}", told(&log));
+    assert!(
+        reported(&log).contains("axis z stands still"),
+        "{}",
+        reported(&log)
+    );
+    assert!(
+        reported(&log).contains("differ by -1"),
+        "{}",
+        reported(&log)
+    );
     let mean = log.axes[0]
         .command_mm
         .iter()
@@ -515,7 +531,7 @@ fn axes_that_stand_still_are_left_out_and_different_zeros_are_taken_out() {
 }
 
 #[test]
-fn what_is_no_log_is_told_as_such() {
+fn a_file_that_is_not_a_log_is_reported_as_such() {
     for (content, part) in [
         (b"".as_slice(), "the file is empty"),
         (b"\xff\xfet\x00", "UTF-16"),

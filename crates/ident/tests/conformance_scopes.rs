@@ -6,7 +6,7 @@
 
 use feedwright_ident::{Log, LogFormat, TorqueUnit};
 
-use crate::logs::{SAMPLE_S, SAMPLES, axis, read, rows, time_s, told};
+use crate::logs::{SAMPLE_S, SAMPLES, axis, read, reported, rows, time_s};
 
 /// Rounding of numbers that were written as text, and of sums of two of them, mm.
 const ROUNDING_MM: f64 = 1e-9;
@@ -111,14 +111,14 @@ fn time_ms() -> Vec<f64> {
 
 /// Asserts that two logs have the same samples of the axes that the second has.
 fn assert_same(log: &Log, format: LogFormat, twin: &Log) {
-    assert_eq!(log.format, format, "{}", told(log));
+    assert_eq!(log.format, format, "{}", reported(log));
     assert!(
         (log.sample_time_s - SAMPLE_S).abs() < 1e-12,
         "{} s",
         log.sample_time_s
     );
     assert_eq!(log.stretches, twin.stretches);
-    assert_eq!(log.axes.len(), twin.axes.len(), "{}", told(log));
+    assert_eq!(log.axes.len(), twin.axes.len(), "{}", reported(log));
     for (found, twin) in log.axes.iter().zip(&twin.axes) {
         assert_eq!(found.name, twin.name);
         for (found, twin) in [
@@ -196,9 +196,9 @@ fn tncscope_is_read_as_its_table() {
     let log = read(&bytes, "").unwrap();
     assert_same(&log, LogFormat::TncScope, &twin(&[("x", &x)]));
     assert!(
-        told(&log).contains("command in column 's actual X' + 's dif X'"),
+        reported(&log).contains("command in column 's actual X' + 's dif X'"),
         "{}",
-        told(&log)
+        reported(&log)
     );
 }
 
@@ -324,7 +324,9 @@ fn groups_of_other_sample_times_are_left_out_and_times_of_the_clock_are_taken_by
 
 /// The message and the remedy of a file that is no log.
 fn refused(text: &str) -> String {
-    let error = read(text.as_bytes(), "").map(|log| told(&log)).unwrap_err();
+    let error = read(text.as_bytes(), "")
+        .map(|log| reported(&log))
+        .unwrap_err();
     let help = miette::Diagnostic::help(&error).map_or_else(String::new, |help| help.to_string());
     format!("{error}; hint: {help}")
 }
@@ -339,9 +341,9 @@ fn what_is_cut_off_or_lacks_a_channel_is_said_with_its_place_and_a_remedy() {
     let part = &whole[..whole.len() / 2];
     let log = read(part.as_bytes(), "").unwrap();
     assert!(
-        told(&log).contains("the header announces 3000 samples, and 1"),
+        reported(&log).contains("the header announces 3000 samples, and 1"),
         "{}",
-        told(&log)
+        reported(&log)
     );
     // In the header.
     let header = &whole[..whole.find("%[DATA]").unwrap()];

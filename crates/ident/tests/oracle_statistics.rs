@@ -156,7 +156,7 @@ fn what_a_machine_does_not_have_is_not_found() {
 }
 
 #[test]
-fn single_imperfections_are_told_from_each_other() {
+fn single_imperfections_are_distinguished() {
     let all = [
         "geometry",
         "late",

@@ -9,7 +9,7 @@ use feedwright_ident::{
 };
 
 /// Kp Kv / J, 1/s2, (Kv + B) / J, 1/s, and Fc / J, mm/s2, of the axis that is recorded.
-const LAW: [f64; 3] = [8000.0, 160.0, 50.0];
+const MODEL: [f64; 3] = [8000.0, 160.0, 50.0];
 /// Ends of strokes, mm, and their speeds, mm/s.
 const STROKES: [[f64; 2]; 8] = [
     [15.0, 100.0],
@@ -55,7 +55,7 @@ fn command_mm(sample_s: f64, samples: usize) -> Vec<f64> {
 
 /// Actual positions of the axis on these commands, in steps of 10 nm, mm.
 fn actual_mm(command_mm: &[f64], sample_s: f64) -> Vec<f64> {
-    let [gain, damping, friction] = LAW;
+    let [gain, damping, friction] = MODEL;
     let (mut at_mm, mut speed_mm_s) = (command_mm[0], 0.0_f64);
     let step_s = sample_s / STEPS as f64;
     let follow = |&command_mm: &f64| {
@@ -118,7 +118,7 @@ fn holds(axis: &FoundAxis) -> bool {
 /// The largest part by which the two gains are off.
 fn off(axis: &FoundAxis) -> f64 {
     let part = |term, wanted: f64| (axis.axis_model().get(term) / wanted - 1.0).abs();
-    part(ModelTerm::LoopGain, LAW[0]).max(part(ModelTerm::Damping, LAW[1]))
+    part(ModelTerm::LoopGain, MODEL[0]).max(part(ModelTerm::Damping, MODEL[1]))
 }
 
 /// The gains of a record of 3 ms are known to this part: the axis is sampled coarsely.

@@ -347,7 +347,7 @@ fn linuxcnc_reads_the_same() {
         match (failure, known) {
             (Some(failure), None) => failures.push(format!("{shown}: {failure}")),
             (None, Some(_)) => failures.push(format!(
-                "{shown}: listed as a difference, but there is none"
+                "{shown}: listed as a difference, but nothing differs"
             )),
             (Some(_), Some(_)) => *counts.entry("known differences").or_default() += 1,
             (None, None) => {}

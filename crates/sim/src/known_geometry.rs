@@ -81,7 +81,7 @@ impl From<GeometryFault> for CompensationError {
             }
             GeometryFault::Order(point) => {
                 format!(
-                    "the position of point {} of a table is not beyond that of the point before",
+                    "the position of point {} of a table is not beyond the point before",
                     point + 1
                 )
             }
@@ -415,7 +415,7 @@ mod tests {
 
     /// Checks x 100 and y 50 mm: scale 0.3 um, squareness 0.2 um in x, and pitch 0.05 um.
     #[test]
-    fn the_spread_is_that_of_the_values_across_the_path() {
+    fn the_spread_is_taken_from_the_values_across_the_path() {
         let file = file();
         assert!(file.states_spread() && !GeometryFile::default().states_spread());
         let at_mm = [100.0, 50.0, 0.0];
@@ -428,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn a_geometry_that_no_inverse_holds_for_is_told_with_its_limit() {
+    fn a_geometry_without_a_valid_inverse_is_reported_with_its_limit() {
         let mut steep = Machine::load("workshop".as_ref()).unwrap();
         // 2 pi 0.1 / 10, and 15e-6 each of scale and squareness.
         steep.axes[1].pitch_error_um = 100.0;

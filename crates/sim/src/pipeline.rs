@@ -383,7 +383,7 @@ impl<'a> Run<'a> {
                 }
             }
         };
-        let mut reference = Reference::new(plan.told_to(self.plan_sink));
+        let mut reference = Reference::new(plan.reporting_to(self.plan_sink));
         let known = self
             .machine
             .compensated

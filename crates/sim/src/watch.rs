@@ -79,12 +79,12 @@ impl<'a> StageSteps<'a> {
         let part = StagePart {
             watch: self.watch,
             most,
-            told: AtomicU64::new(0),
+            reported: AtomicU64::new(0),
             steps: AtomicU64::new(0),
             done: AtomicU64::new(0),
         };
         let result = work(&part);
-        self.done += part.told.into_inner();
+        self.done += part.reported.into_inner();
         self.reach(to);
         result
     }
@@ -95,7 +95,7 @@ struct StagePart<'a> {
     watch: &'a dyn Watch,
     /// Steps of the outer stage that the work fills, and the steps that were reported to it.
     most: u64,
-    told: AtomicU64,
+    reported: AtomicU64,
     /// Steps of the stage of the work, and those that are done.
     steps: AtomicU64,
     done: AtomicU64,
@@ -111,8 +111,8 @@ impl Watch for StagePart<'_> {
         let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
         let of = self.steps.load(Ordering::Relaxed).max(1);
         let reached = (self.most as f64 * (done as f64 / of as f64).min(1.0)) as u64;
-        let told = self.told.fetch_max(reached, Ordering::Relaxed);
-        self.watch.advance(reached.saturating_sub(told));
+        let reported = self.reported.fetch_max(reached, Ordering::Relaxed);
+        self.watch.advance(reached.saturating_sub(reported));
     }
 
     fn is_cancelled(&self) -> bool {
@@ -137,9 +137,9 @@ mod tests {
 
     /// Stages with their steps, and the steps that are done.
     #[derive(Default)]
-    struct Told(Mutex<Vec<(String, u64, u64)>>);
+    struct Reported(Mutex<Vec<(String, u64, u64)>>);
 
-    impl Watch for Told {
+    impl Watch for Reported {
         fn begin(&self, stage: &str, steps: u64) {
             self.0.lock().unwrap().push((stage.to_owned(), steps, 0));
         }
@@ -151,22 +151,22 @@ mod tests {
 
     #[test]
     fn stages_of_work_within_a_stage_fill_their_part_of_it() {
-        let told = Told::default();
-        let mut steps = StageSteps::begin(&told, "identifying");
+        let reported = Reported::default();
+        let mut steps = StageSteps::begin(&reported, "identifying");
         steps.reach(0.1);
-        let of = |told: &Told| told.0.lock().unwrap().clone();
+        let of = |reported: &Reported| reported.0.lock().unwrap().clone();
         steps.filled(0.6, |watch| {
             let mut inner = StageSteps::begin(watch, "reading");
             inner.reach(0.5);
-            assert_eq!(of(&told), [("identifying".to_owned(), STEPS, 350)]);
+            assert_eq!(of(&reported), [("identifying".to_owned(), STEPS, 350)]);
             // A second stage goes over the same part, and takes nothing back.
             let mut inner = StageSteps::begin(watch, "fitting");
             inner.filled(0.8, |watch| StageSteps::begin(watch, "an axis").reach(1.0));
-            assert_eq!(of(&told)[0].2, 500);
+            assert_eq!(of(&reported)[0].2, 500);
             inner.reach(0.9);
         });
-        assert_eq!(of(&told), [("identifying".to_owned(), STEPS, 600)]);
+        assert_eq!(of(&reported), [("identifying".to_owned(), STEPS, 600)]);
         steps.reach(1.0);
-        assert_eq!(of(&told)[0].2, STEPS);
+        assert_eq!(of(&reported)[0].2, STEPS);
     }
 }

@@ -102,7 +102,7 @@ fn check(name: &str, plan: &PublishedPlan, step: &ScaledStep, most_mm_s: f64) {
         let planned_mm = plan.at(now.tau_s).position_mm;
         assert!(
             distance(planned_mm, motion.position_mm) < 1e-9,
-            "{name}: the path is that of the plan"
+            "{name}: the path differs from the plan"
         );
         assert!(now.rate >= -1e-12, "{name}: {now:?}");
         for k in 0..3 {

@@ -78,7 +78,7 @@ pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
             &world.place,
             &world.limits,
         );
-        world.hear(&inputs);
+        world.receive(&inputs);
         let outputs = servo.step(&inputs, &world.limits);
         world.check(n, &outputs);
         let (tool_mm, _) = compensation.tool(
@@ -166,7 +166,7 @@ impl<const N: usize> World<N> {
     }
 
     /// Records the inputs of the link.
-    fn hear(&mut self, inputs: &LinkInputs<N>) {
+    fn receive(&mut self, inputs: &LinkInputs<N>) {
         // A position whose distance overflows does not count.
         let is_heard = |mm: &[f64; N]| mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite();
         self.path_mm

@@ -68,10 +68,7 @@ impl Controller<2> for Both {
     }
 
     fn report(&self) -> SelfReport<2> {
-        self.same(|controller| {
-            let report = controller.report();
-            report
-        })
+        self.same(|controller| controller.report())
     }
 
     fn command(&mut self, window: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {

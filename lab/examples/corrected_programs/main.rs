@@ -192,7 +192,7 @@ fn one_wrong() -> Vec<[f64; 3]> {
 type Ratios = [f64; 5];
 
 /// Corrects a program, cuts both and prints a line. None where no program was written.
-fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) -> Option<Ratios> {
+fn line(name: &str, machine: &Machine, text: &str, assumed: Option<Machine>) -> Option<Ratios> {
     let program = Program::from_text("part.ngc", text);
     let refused = |why: &str| {
         println!("{:<9} {name:<32} {why}", machine.name);
@@ -203,7 +203,7 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
     };
     let axes = if summary.moves[2] { 3 } else { 2 };
     let mut job = CorrectJob::new(program, machine.clone(), &TARGETS[0]);
-    job.believed = believed;
+    job.assumed = assumed;
     let outcome = match job.run(&()) {
         Ok(outcome) => outcome,
         Err(error) => return refused(&error.to_string()),

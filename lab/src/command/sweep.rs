@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use feedwright::command::{
-    Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, printed, settings, tables,
-    tell_written, wrapped,
+    Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, printed, report_written, settings,
+    tables, wrapped,
 };
 use feedwright::{OutputError, OutputFile, OutputFiles};
 use feedwright_sim::Machine;
@@ -112,7 +112,7 @@ pub(super) fn write_text(
 /// Prints that a text is in its place.
 pub(super) fn say_place(to: &Path) -> Result<ExitCode> {
     let out = Some(to);
-    printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
+    printed(report_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
 }
 
 /// Writes a result, and moves the file to its place.

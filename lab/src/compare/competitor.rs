@@ -30,9 +30,9 @@ pub enum Knowledge {
 /// Assumed inertia where parameters are 20 % off, as a part of the true one. The error is opposite
 /// to the error in friction, so that the two errors of the torque do not cancel each other where an
 /// axis speeds up.
-const INERTIA_BELIEVED: f64 = 0.8;
+const INERTIA_ASSUMED: f64 = 0.8;
 /// Assumed friction, as a part of the true one.
-const FRICTION_BELIEVED: f64 = 1.2;
+const FRICTION_ASSUMED: f64 = 1.2;
 
 impl Knowledge {
     /// All kinds, in the order of the table.
@@ -137,18 +137,18 @@ impl Competitor {
             period: machine.period,
             ..nominal.clone()
         };
-        let told = match self.knowledge {
-            Knowledge::Log => recorded_machine(machine, 2, seed, &()).map(|(told, _)| told),
+        let stated = match self.knowledge {
+            Knowledge::Log => recorded_machine(machine, 2, seed, &()).map(|(stated, _)| stated),
             Knowledge::Unseen => Ok(unseen),
             _ => Ok(machine.clone()),
         };
-        let Ok(known) = &told else {
+        let Ok(known) = &stated else {
             return Box::new(Uncorrected);
         };
         let mut setup = Setup::new(known, &choices);
         match self.knowledge {
             Knowledge::TwentyPercentOff => {
-                setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
+                setup.known = setup.known.misjudged(INERTIA_ASSUMED, FRICTION_ASSUMED);
             }
             Knowledge::Identified if setup.identify_parameters::<2>().is_err() => {
                 return Box::new(Uncorrected);

@@ -31,7 +31,7 @@ const MOVES: u32 = 6;
 /// Bases of the Halton sequence: as many as there are parameters at most.
 const BASES: [u32; 6] = [2, 3, 5, 7, 11, 13];
 /// Cost of a percent of time, in percent of error.
-const TIME_PRICE: f64 = 10.0;
+const TIME_COST: f64 = 10.0;
 
 /// A value that is nearer to an end of its range, as a part of it, is at the end.
 const AT_END: f64 = 0.01;
@@ -157,7 +157,7 @@ impl Trial<'_> {
     fn cost(&self, place: &[f64]) -> Result<f64, RunError> {
         let found = self.evaluate(&self.settings(place))?;
         let longer = (found.time_s / self.open.time_s - 1.0).max(0.0);
-        let cost = found.rms_um * (1.0 + TIME_PRICE * longer);
+        let cost = found.rms_um * (1.0 + TIME_COST * longer);
         Ok(if found.sound { cost } else { f64::INFINITY })
     }
 
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_at_an_end_of_its_range_is_told() {
+    fn a_place_at_an_end_of_its_range_is_reported() {
         let [low, high] = [RangeEnd::Low, RangeEnd::High].map(Some);
         assert_eq!([0.0, 0.005, 0.5, 1.0].map(end_of), [low, low, None, high]);
     }

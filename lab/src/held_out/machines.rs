@@ -288,7 +288,7 @@ mod tests {
     /// A pure integrator has 90 degrees less its delay; a speed loop as fast as its crossover takes
     /// 45 more.
     #[test]
-    fn the_phase_margin_is_that_of_the_closed_form() {
+    fn the_phase_margin_agrees_with_the_closed_form() {
         let mut axis = *Machine::load(BASE.as_ref()).expect("built in").axis(0);
         (axis.kp_1_s, axis.inertia_kg_m2, axis.viscous_friction_nm_s) = (50.0, 1e-9, 0.0);
         assert!((phase_margin_deg(&axis, 0.001) - (90.0 - 0.075 * 180.0 / PI)).abs() < 1e-3);

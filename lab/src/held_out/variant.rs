@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_there_is_none_of_is_refused() {
+    fn an_unknown_key_is_refused() {
         let odd = Variant::of("tnv40", "odd").with("limits", "no_such_key", 1.0);
         assert!(odd.machine().is_err());
     }

@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn the_later_error_is_that_of_cutting_rows_from_the_third_second_of_motion_on() {
+    fn the_later_error_comes_from_cutting_rows_from_the_third_second_of_motion_on() {
         let later = |seconds: f64| {
             let mut later = LaterError {
                 servo_s: 0.001,

@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_key_is_that_of_the_content() {
+    fn the_key_follows_from_the_content() {
         assert_eq!(program(600.0).key, program(700.0).key);
     }
 

@@ -70,7 +70,7 @@ fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
         "Figure 7",
         &format!(
             "Contour error for several weights of the machining time, with the first term of eq. 7 set to zero: a larger \
-             ρ is faster and less accurate ({}). The sign of the term is that of the derivative of eq. 7; as printed in \
+             ρ is faster and less accurate ({}). The term has the sign of the derivative of eq. 7; as printed in \
              eqs 9 and 10 a larger ρ would be slower.",
             times.join(", ")
         ),

@@ -27,7 +27,7 @@ pub(super) const BANDWIDTH: Parameter = Parameter::number(
     [0.0, 1000.0],
     Some([1.0, 1000.0]),
     "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
-     believes what it measures, and hardly changes",
+     follows what it measures, and hardly changes",
 );
 
 /// Gains of the observer of an axis, for a bandwidth and a servo period of `servo_s`.

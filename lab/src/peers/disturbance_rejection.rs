@@ -340,7 +340,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn no_more_is_believed_than_the_drive_can() {
+    fn no_more_is_assumed_than_the_drive_can() {
         let of = ObservedAxis {
             axis: axis(0.0),
             drive: ObservedDrive::default(),

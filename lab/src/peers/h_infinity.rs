@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_case_is_within_its_bound_and_below_that_of_the_kalman_filter() {
+    fn the_worst_case_is_within_its_bound_and_below_the_kalman_filter() {
         let (axis, noise) = (rejection::axis(0.0), AxisNoise::DEFAULT);
         let kalman = worst_gain(&axis, &noise, kalman_disturbance::gains(&axis, &noise));
         let worst = worst_gain(&axis, &noise, gains(&axis, &noise, 1.05));

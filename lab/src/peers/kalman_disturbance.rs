@@ -62,7 +62,7 @@ pub(super) const DRIFT: Parameter = Parameter::number(
     [1e-6, 1e4],
     Some([1e-3, 1e4]),
     "change of the disturbance: a small one is late at every reversal, a large one hands on the noise of the encoder; from 100 on \
-     the filter believes what it measures, and hardly changes",
+     the filter follows what it measures, and hardly changes",
 );
 pub(super) const TORQUE_NOISE: Parameter = Parameter::number(
     "torque_noise_mm_s",

@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn the_velocity_of_a_circle_is_that_of_central_differences() {
+    fn the_velocity_of_a_circle_agrees_with_central_differences() {
         let angle = |k: u32| 0.005 * f64::from(k);
         let history =
             of((0..100).map(|k| [10.0 * libm::cos(angle(k)), 10.0 * libm::sin(angle(k))]));

@@ -82,7 +82,7 @@ impl<const N: usize> PlayOut<N> {
     }
 
     fn push(&mut self, inputs: &LinkInputs<N>) {
-        self.through.hear(&inputs.through);
+        self.through.receive(&inputs.through);
         if norm(inputs.command_mm).is_finite() {
             self.command_mm = inputs.command_mm;
         }

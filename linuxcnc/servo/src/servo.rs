@@ -252,7 +252,7 @@ impl<const N: usize> Servo<N> {
     pub fn step(&mut self, inputs: &LinkInputs<N>, limits: &LinkLimits) -> LinkOutputs<N> {
         let refused = self.take_over(limits);
         let is_heard = norm(inputs.command_mm).is_finite();
-        let told = self.through.hear(&inputs.through) && is_heard;
+        let reported = self.through.receive(&inputs.through) && is_heard;
         if norm(inputs.actual_mm).is_finite() {
             self.actual_mm = inputs.actual_mm;
         }
@@ -265,9 +265,9 @@ impl<const N: usize> Servo<N> {
             (self.command_mm, self.heard) = (inputs.command_mm, true);
         }
         let mut outputs = if inputs.powered && self.heard {
-            self.on(inputs, told)
+            self.on(inputs, reported)
         } else {
-            self.off(told)
+            self.off(reported)
         };
         outputs.adaptive_feed = bounded(self.limits.adaptive_scale * outputs.rate, 0.0, 1.0);
         if !inputs.enabled {
@@ -332,7 +332,7 @@ impl<const N: usize> Servo<N> {
         }
     }
 
-    fn on(&mut self, inputs: &LinkInputs<N>, told: bool) -> LinkOutputs<N> {
+    fn on(&mut self, inputs: &LinkInputs<N>, reported: bool) -> LinkOutputs<N> {
         self.choose(inputs);
         self.history
             .push(self.command_mm, &self.through, inputs.cutting);
@@ -343,7 +343,7 @@ impl<const N: usize> Servo<N> {
             Link::Off | Link::Direct => self.direct(),
         };
         self.hold(inputs, &mut outputs);
-        if !told {
+        if !reported {
             outputs.fault = LinkFault::Command;
         }
         outputs
@@ -373,7 +373,7 @@ impl<const N: usize> Servo<N> {
     }
 
     /// Handles amplifiers that are off: drive and control get the actual position.
-    fn off(&mut self, told: bool) -> LinkOutputs<N> {
+    fn off(&mut self, reported: bool) -> LinkOutputs<N> {
         self.link = Link::Off;
         self.history.clear();
         self.residual = Fading::NONE;
@@ -381,7 +381,7 @@ impl<const N: usize> Servo<N> {
         self.latch.take_in(None, [false; N], 0.0);
         self.latch.reset();
         self.controller.forget_machine();
-        let fault = if told || !self.heard {
+        let fault = if reported || !self.heard {
             self.refused()
         } else {
             LinkFault::Command

@@ -53,7 +53,7 @@ impl Through {
 
     /// Takes over what is a number, and keeps the last one of what is not. Returns whether every
     /// command is a number.
-    pub fn hear(&mut self, inputs: &Self) -> bool {
+    pub fn receive(&mut self, inputs: &Self) -> bool {
         let take = |kept: &mut [f64; CHANNELS], heard: [f64; CHANNELS]| {
             kept.iter_mut()
                 .zip(heard)

@@ -164,7 +164,7 @@ fn a_caller_lays_out_what_the_library_does() {
 }
 
 #[test]
-fn memory_that_is_none_for_it_is_refused() {
+fn unsuitable_memory_is_refused() {
     let block = contour::<2>();
     let (bytes, length) = (block.as_ptr(), block.len());
     let mut memory = vec![0_u8; feedwright_servo_bytes() + 16];
@@ -207,7 +207,7 @@ fn memory_that_is_none_for_it_is_refused() {
 }
 
 #[test]
-fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
+fn an_invalid_model_leaves_a_link_that_passes_commands_on() {
     let whole = block::<2>();
     let mut limits = [0.0; 3];
     // SAFETY: a null pointer may stand for a missing model, and the memory is valid.

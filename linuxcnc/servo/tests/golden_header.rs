@@ -4,7 +4,7 @@
 use std::path::Path;
 
 #[test]
-fn the_header_is_that_of_the_library() {
+fn the_header_agrees_with_the_library() {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (library, header) = (here.join("../hal"), here.join("../components/feedwright.h"));
     let made = cbindgen::generate(library).expect("a header");

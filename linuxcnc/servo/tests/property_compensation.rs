@@ -5,7 +5,7 @@
 mod axis;
 #[path = "common/inputs.rs"]
 mod common;
-#[expect(dead_code, reason = "a turn here is that of the joints")]
+#[expect(dead_code, reason = "a turn here is a turn of the joints")]
 #[path = "common/turn.rs"]
 mod turning;
 
@@ -119,7 +119,7 @@ fn acceleration_mm_s2(three: &[[f64; 2]]) -> [f64; 2] {
 }
 
 #[test]
-fn whatever_is_homed_and_switched_the_joints_go_smoothly_and_the_following_error_is_that_of_the_joints()
+fn whatever_is_homed_and_switched_the_joints_go_smoothly_and_the_following_error_is_the_error_of_the_joints()
  {
     let (mut in_force, mut faded) = (0, 0);
     for seed in 0..40 {
@@ -294,7 +294,7 @@ fn what_is_not_a_number_moves_nothing() {
 }
 
 #[test]
-fn a_second_motor_gets_the_offset_of_its_axis_and_its_feedback_loses_that_of_its_axis() {
+fn a_second_motor_gets_the_offset_of_its_axis_and_its_feedback_loses_it() {
     let mut compensation = Compensation::new(Some(geometry()));
     let place = MachinePlace {
         zero_mm: [0.0; 2],

@@ -166,14 +166,14 @@ fn a_probing_motion_is_held_until_it_is_without_delay_and_the_cut_behind_it_unti
 }
 
 #[test]
-fn a_control_that_does_not_hold_is_told_so() {
+fn a_control_that_does_not_hold_is_reported() {
     let periods = probing(false, |_, _| {});
-    let told = |block: usize| {
+    let reported = |block: usize| {
         of(&periods, block)
             .iter()
             .any(|period| period.outputs.fault == LinkFault::NotHeld)
     };
-    assert!(told(2) && !told(1) && !told(3));
+    assert!(reported(2) && !reported(1) && !reported(3));
     assert!(
         of(&periods, 3)
             .iter()

@@ -56,7 +56,7 @@ fn the_correction_takes_the_contour_error_away() {
 }
 
 #[test]
-fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_told() {
+fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_reported() {
     for late_s in [0.001, 0.002, 0.003, 0.005] {
         let mut real = machine();
         real.axes
@@ -70,11 +70,11 @@ fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_told() {
         ));
         let periods = turn_on(&real, Ok(machine()), |_| LIMITS, |_, _| {});
         println!("{late_s}: {} {without}", rms_mm(&periods));
-        let told =
+        let reported =
             |outputs: &LinkOutputs<2>| outputs.learned != [false; 2] || outputs.left.is_some();
         assert!(
-            periods.iter().any(|period| told(&period.outputs)),
-            "{late_s}: nothing was told"
+            periods.iter().any(|period| reported(&period.outputs)),
+            "{late_s}: nothing was reported"
         );
         assert!(
             rms_mm(&periods) <= without + NO_WORSE_MM,
@@ -85,7 +85,7 @@ fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_told() {
 }
 
 #[test]
-fn the_following_error_of_the_control_is_that_of_the_drive() {
+fn the_following_error_of_the_control_is_the_error_of_the_drive() {
     for period in turn(Ok(machine()), &LIMITS, |_, inputs| inputs.enabled = false) {
         let (inputs, outputs) = (&period.inputs, &period.outputs);
         for i in 0..2 {
@@ -258,13 +258,13 @@ fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_ag
                 }
             },
         );
-        let told = |n: usize| periods[n].outputs.fault;
+        let reported = |n: usize| periods[n].outputs.fault;
         assert_eq!(
-            told(from + 100),
+            reported(from + 100),
             LinkFault::Faded(Cause::LostFeedback),
             "{from}"
         );
-        assert_eq!(told(from + 500), LinkFault::None, "{from}");
+        assert_eq!(reported(from + 500), LinkFault::None, "{from}");
     }
 }
 

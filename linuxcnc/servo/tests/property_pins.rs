@@ -46,7 +46,7 @@ const SPOILT: [Spoilt; 6] = [
 ];
 
 #[test]
-fn a_number_that_is_none_changes_nothing_and_is_told() {
+fn what_is_not_a_number_changes_nothing_and_is_reported() {
     let good = turn(Ok(machine()), &LIMITS, |_, _| {});
     for (name, setting, spoil) in SPOILT {
         for value in [
@@ -76,12 +76,12 @@ fn a_number_that_is_none_changes_nothing_and_is_told() {
                         outputs.adaptive_feed, 1.0,
                         "{name} {value}, from {from}: {n}"
                     );
-                    let told = if spoilt.contains(&n) {
+                    let reported = if spoilt.contains(&n) {
                         LinkFault::Setting(setting)
                     } else {
                         LinkFault::None
                     };
-                    assert_eq!(outputs.fault, told, "{name} {value}, from {from}: {n}");
+                    assert_eq!(outputs.fault, reported, "{name} {value}, from {from}: {n}");
                 }
             }
         }

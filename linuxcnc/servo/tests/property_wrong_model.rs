@@ -50,7 +50,7 @@ struct Cut {
     error_um: [f64; 2],
     /// Largest torque of a motor, N m.
     largest_nm: f64,
-    told: Vec<LinkFault>,
+    reported: Vec<LinkFault>,
 }
 
 fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut {
@@ -59,7 +59,7 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
         Servo::new(Ok(TrainedModel::of_axes(machine()))),
     );
     servo.runs_at(SERVO_S);
-    let (mut near, mut squares, mut largest, mut largest_nm, mut told) =
+    let (mut near, mut squares, mut largest, mut largest_nm, mut reported) =
         (0, Vec::new(), 0.0_f64, 0.0_f64, Vec::new());
     let commands = commands(points);
     for (n, command_mm) in commands.iter().enumerate() {
@@ -73,8 +73,8 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
             .torque_nm()
             .iter()
             .fold(largest_nm, |most, nm| most.max(nm.abs()));
-        if !told.contains(&outputs.fault) {
-            told.push(outputs.fault);
+        if !reported.contains(&outputs.fault) {
+            reported.push(outputs.fault);
         }
         if n > REST && n + 150 < commands.len() {
             let error_um = 1e3 * error_mm(points, &mut near, plant.position_mm());
@@ -86,7 +86,7 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
     Cut {
         error_um: [rms_um, largest],
         largest_nm,
-        told,
+        reported,
     }
 }
 
@@ -107,7 +107,7 @@ fn by_the_right_model_a_cut_that_begins_where_the_machine_stands_is_corrected() 
                 off.error_um
             );
         }
-        assert_eq!(on.told, [LinkFault::None], "{name}");
+        assert_eq!(on.reported, [LinkFault::None], "{name}");
     }
 }
 
@@ -142,7 +142,7 @@ fn by_the_model_of_another_machine_nothing_is_worse() {
                 [false, true].map(|enabled| cut(&changed(change), inertia, &points, enabled));
             println!(
                 "{how:30} {name:8} {:7.2?} of {:7.2?} {:?}",
-                on.error_um, off.error_um, on.told
+                on.error_um, off.error_um, on.reported
             );
             // A machine whose drives have no torque reserve overshoots more at its corners.
             let most = [

@@ -185,7 +185,7 @@ type Advanced<'py> = (
 /// A run that waits for its actions.
 #[pyclass(module = "feedwright.lab")]
 pub(crate) struct Episode {
-    told: Mutex<Receiver<EpisodeMessage>>,
+    reported: Mutex<Receiver<EpisodeMessage>>,
     actions: Option<Sender<Action>>,
     thread: Option<JoinHandle<()>>,
     raised: Raised,
@@ -211,7 +211,7 @@ impl Episode {
             term: options.plant_term(py, &raised),
             raised: raised.clone(),
         };
-        let (shown, told) = channel();
+        let (shown, reported) = channel();
         let (actions, asked) = channel();
         let thread = thread::Builder::new()
             .name("feedwright episode".to_owned())
@@ -222,7 +222,7 @@ impl Episode {
                 let _ = shown.send(EpisodeMessage::End(end, errors.take()));
             })?;
         let mut episode = Self {
-            told: Mutex::new(told),
+            reported: Mutex::new(reported),
             actions: Some(actions),
             thread: Some(thread),
             raised,
@@ -231,7 +231,7 @@ impl Episode {
         };
         if let EpisodeMessage::Known(known, axes) = episode.wait(py)? {
             episode.axes = axes;
-            episode.known = Some(super::task::told(py, &known, axes)?.unbind());
+            episode.known = Some(super::task::reported(py, &known, axes)?.unbind());
             return Ok(episode);
         }
         Err(exception(&miette!("the program has nothing to cut")))
@@ -306,20 +306,20 @@ impl Episode {
     /// Returns the next message of the run. Raises what a signal or the code of the caller raises.
     fn wait(&self, py: Python<'_>) -> PyResult<EpisodeMessage> {
         loop {
-            let told = py.detach(|| {
-                self.told
+            let reported = py.detach(|| {
+                self.reported
                     .lock()
                     .unwrap_or_else(PoisonError::into_inner)
                     .recv_timeout(EVERY)
             });
-            match told {
+            match reported {
                 Ok(EpisodeMessage::End(end, errors)) => {
                     return self
                         .raised
                         .take()
                         .map_or(Ok(EpisodeMessage::End(end, errors)), Err);
                 }
-                Ok(told) => return Ok(told),
+                Ok(reported) => return Ok(reported),
                 Err(RecvTimeoutError::Timeout) => py.check_signals()?,
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(exception(&miette!("the episode is over: reset it")));

@@ -25,7 +25,7 @@ const TABLE: Controllers = if cfg!(feature = "peers") {
 };
 /// Assumed inertia and friction where the knowledge is wrong, as parts of the true values. The two
 /// errors are opposite.
-const BELIEVED: [f64; 2] = [0.8, 1.2];
+const ASSUMED: [f64; 2] = [0.8, 1.2];
 
 /// Seed of recordings and trainings: a machine is identified once, whatever the noise of the cut.
 pub(super) const RECORDING_SEED: u64 = 1;
@@ -97,9 +97,9 @@ where
 {
     /// Makes the controller. Its recordings have the noise of the machine file, as in `identified`.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
-        let mut told = Setup::new(&self.task.machine, setup.choices);
-        told.known.clone_from(&self.known);
-        self.task.made.make(&mut told)
+        let mut reported = Setup::new(&self.task.machine, setup.choices);
+        reported.known.clone_from(&self.known);
+        self.task.made.make(&mut reported)
     }
 }
 
@@ -193,7 +193,7 @@ impl LabTask {
     /// Returns the known values of the machine with `axes` controlled axes.
     pub(super) fn known(&self, axes: usize) -> Result<Known> {
         match self.knowledge.as_str() {
-            "wrong" => Ok(self.machine.known().misjudged(BELIEVED[0], BELIEVED[1])),
+            "wrong" => Ok(self.machine.known().misjudged(ASSUMED[0], ASSUMED[1])),
             "identified" => identified(&self.machine, axes),
             _ => Ok(self.machine.known()),
         }
@@ -228,7 +228,7 @@ impl LabOptions {
 }
 
 /// Returns the known values of each axis, by name: a mapping that cannot be changed.
-pub(super) fn told<'py>(
+pub(super) fn reported<'py>(
     py: Python<'py>,
     known: &Known,
     axes: usize,

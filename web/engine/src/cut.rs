@@ -52,14 +52,14 @@ pub(crate) fn run(request: &mut PageRequest) -> miette::Result<Outputs> {
         .map(ToString::to_string)
         .chain(remarks)
         .collect::<Vec<_>>();
-    let told = json!({
+    let reported = json!({
         "runs": table,
         "remarks": remarks,
         "is_of_use": outcome.is_of_use,
         "verdict": outcome.report.verdict(),
         "limits": outcome.report.limits.as_ref().map_or_else(Vec::new, LimitBand::shares),
     });
-    Ok(vec![results, rows, page, json(&told), drawings])
+    Ok(vec![results, rows, page, json(&reported), drawings])
 }
 
 /// Returns a row of the table of `run`.

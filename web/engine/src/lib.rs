@@ -83,7 +83,7 @@ pub extern "C" fn run() -> u32 {
     });
     let (outputs, succeeded) = match answer(&input, program) {
         Ok(outputs) => (outputs, 1),
-        Err(error) => (vec![told(&error).into_bytes()], 0),
+        Err(error) => (vec![reported(&error).into_bytes()], 0),
     };
     with_buffers(|buffers| buffers.outputs = outputs);
     succeeded
@@ -123,7 +123,7 @@ fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
 }
 
 /// Returns an error as text, with the errors that belong to it and the remedy.
-fn told(error: &miette::Report) -> String {
+fn reported(error: &miette::Report) -> String {
     let related = error
         .related()
         .into_iter()

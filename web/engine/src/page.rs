@@ -50,7 +50,7 @@ struct Stage {
     name: String,
     steps: u64,
     done: u64,
-    told: u64,
+    reported: u64,
 }
 
 /// Watch that reports the progress of a stage to the page.
@@ -64,7 +64,7 @@ impl Watch for PageWatch {
             name: stage.to_owned(),
             steps: steps.max(1),
             done: 0,
-            told: 0,
+            reported: 0,
         };
         imports::progress(now.name.as_ptr() as usize, now.name.len(), 0);
     }
@@ -73,8 +73,8 @@ impl Watch for PageWatch {
         let mut now = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         now.done += steps;
         let thousandths = (1000 * now.done / now.steps.max(1)).min(1000);
-        if thousandths >= now.told + STEP {
-            now.told = thousandths;
+        if thousandths >= now.reported + STEP {
+            now.reported = thousandths;
             imports::progress(
                 now.name.as_ptr() as usize,
                 now.name.len(),

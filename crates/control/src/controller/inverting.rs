@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn asks_for_the_preview_of_its_knots_and_for_none_beyond_what_there_is() {
+    fn asks_for_the_preview_of_its_knots_within_the_window() {
         let schedule = |servo_periods, knots| {
             TwoDimensional::untried(
                 sample().0,

@@ -68,7 +68,7 @@ use crate::identifier::IdentifierKind;
 use crate::model::Trained;
 use crate::supervisor::first_use::FirstUse;
 use crate::supervisor::one_step::{OneStep, RUN_S};
-use crate::supervisor::validity::{Shown, Trusted, Validity};
+use crate::supervisor::validity::{ModelWeights, Shown, Validity};
 use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
 use feasible::Feasibility;
@@ -358,7 +358,7 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
             );
             validity.take_in(&shown, followed, window.feed_period_s);
             if validity.has_machine_changed() {
-                self.axes.iter_mut().for_each(AxisLqg::doubt);
+                self.axes.iter_mut().for_each(AxisLqg::restore_uncertainty);
             }
         }
     }
@@ -385,10 +385,10 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
         let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
-        let trusted = self
+        let model_weights = self
             .validity
             .as_ref()
-            .map_or(Trusted::FULLY, Validity::trusted);
+            .map_or(ModelWeights::FULLY, Validity::model_weights);
         self.look_ahead(window);
         let open = self.feasibility.open();
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
@@ -396,7 +396,7 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
             let late_s = axis.command_delay_s();
             let at_mm = |after_s: f64| of_axis(window.at(after_s + late_s - lag_s).position_mm);
-            *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
+            *offset_mm = axis.offset_mm(of_axis(here_mm), model_weights, open, at_mm);
         }
         self.asked_mm = offset_mm;
         let share = self.first_use.as_ref().map_or(1.0, FirstUse::share);

@@ -26,7 +26,7 @@ const MIN_MM2: f64 = 2.5e-5;
 /// this much, mm.
 const MIN_PEAK_MM: f64 = 0.03;
 /// Relative error of g that is tolerated.
-const DOUBT: f64 = 0.1;
+const MODEL_ERROR: f64 = 0.1;
 /// Limits of the mean square where g is only a guess: the factor, and the constant part, mm^2.
 const GUESSED: f64 = 2.0;
 const GUESSED_MM2: f64 = 1e-4;
@@ -80,7 +80,7 @@ impl<const N: usize> Benefit<N> {
         };
         let square = dot(vector_mm, vector_mm);
         self.open_mm = norm(open.vector_mm);
-        let open_peak_mm = self.open_mm + DOUBT * norm(g_mm);
+        let open_peak_mm = self.open_mm + MODEL_ERROR * norm(g_mm);
         let open_square = open_peak_mm * open_peak_mm;
         self.square_mm2 += part * (square - self.square_mm2);
         self.open_square_mm2 += part * (open_square - self.open_square_mm2);

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_is_used_that_predicts_half_of_what_there_is_to_correct() {
+    fn a_model_is_used_that_predicts_half_of_the_error_to_correct() {
         for (periods, seen_mm, is_shown) in [
             (19, [0.0, 0.1, 0.0], false),
             (21, [0.049, 0.1, 0.0], true),
@@ -154,7 +154,7 @@ mod tests {
         (0..21).for_each(|_| refuted.take_in(Some([0.0, 0.01]), SERVO_S));
         assert!(
             refuted.is_shown(),
-            "what the law before it missed does not count"
+            "errors of the model before do not count"
         );
     }
 }

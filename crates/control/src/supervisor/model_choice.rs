@@ -175,12 +175,12 @@ mod tests {
     }
 
     #[test]
-    fn two_models_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
+    fn two_models_that_differ_by_what_noise_explains_are_not_distinguished_soon() {
         assert!(after(10, [0.5, 0.1]) < CERTAIN);
         assert_eq!(after(100, [1.0, 1.0]), 0.0);
         assert!(
             after(1, [100.0, 0.0]) > CERTAIN,
-            "one run is enough where it is beyond doubt"
+            "one run is enough where the evidence is that strong"
         );
         assert!(
             after(1, [20.0, 0.0]) < CERTAIN && after(2, [20.0, 0.0]) > CERTAIN,

@@ -43,10 +43,10 @@ const MEMORY_S: f64 = 0.005;
 /// Time of a free run, s: about the time constant of a usual position loop.
 pub(crate) const RUN_S: f64 = 0.03;
 /// Time in which the weight of a model falls to zero, s.
-pub(crate) const TO_DOUBT_S: f64 = 0.005;
+pub(crate) const FALL_S: f64 = 0.005;
 /// Time in which the weight of a model rises to its full value, s. It grows by the factor `LONGER`
 /// each time that the loads were dropped, up to `LONGEST_S`.
-const TO_TRUST_S: f64 = 0.3;
+const RISE_S: f64 = 0.3;
 const LONGER: f64 = 4.0;
 const LONGEST_S: f64 = 20.0;
 
@@ -93,7 +93,7 @@ pub(crate) struct Course {
     /// Weight of the loads, 0 to 1, before smoothing.
     loads: f64,
     /// Time in which the weight of the loads rises from 0 to 1, s.
-    to_trust_s: f64,
+    rise_s: f64,
 }
 
 impl Course {
@@ -101,7 +101,7 @@ impl Course {
     pub(crate) const AS_SAID: Self = Self {
         mean: OneStep::NONE,
         loads: 1.0,
-        to_trust_s: TO_TRUST_S,
+        rise_s: RISE_S,
     };
 
     /// Takes in a servo period.
@@ -109,13 +109,13 @@ impl Course {
         let part = (servo_s / MEMORY_S).min(1.0);
         self.mean = self.mean.with(part, step).with(-part, self.mean);
         let change = if self.is_as_said() {
-            servo_s / self.to_trust_s
+            servo_s / self.rise_s
         } else {
-            -servo_s / TO_DOUBT_S
+            -servo_s / FALL_S
         };
         let loads = bounded(self.loads + change, 0.0, 1.0);
         if self.loads >= 0.5 && loads < 0.5 {
-            self.to_trust_s = (LONGER * self.to_trust_s).min(LONGEST_S);
+            self.rise_s = (LONGER * self.rise_s).min(LONGEST_S);
         }
         self.loads = loads;
     }
@@ -134,8 +134,8 @@ impl Course {
     }
 
     /// Returns the time in which the weight of a model rises from 0 to 1, s.
-    pub(crate) fn trust_time_s(&self) -> f64 {
-        self.to_trust_s
+    pub(crate) fn rise_time_s(&self) -> f64 {
+        self.rise_s
     }
 
     /// Returns the part of the loads that is used.
@@ -194,16 +194,16 @@ mod tests {
     fn loads_are_let_go_in_5_ms_and_taken_up_four_times_later_each_time() {
         let mut course = Course::AS_SAID;
         assert_eq!(course.loads(), 1.0);
-        for to_trust_s in [1.2, 4.8, 19.2, 20.0, 20.0] {
+        for rise_s in [1.2, 4.8, 19.2, 20.0, 20.0] {
             after(&mut course, 7, [0.01, 0.0, 0.0]);
-            assert_eq!((course.loads(), course.trust_time_s()), (0.0, to_trust_s));
-            let periods = (1000.0 * to_trust_s) as u32;
+            assert_eq!((course.loads(), course.rise_time_s()), (0.0, rise_s));
+            let periods = (1000.0 * rise_s) as u32;
             after(&mut course, periods / 2, [0.0; 3]);
             let half = course.loads();
             after(&mut course, periods / 2 + 50, [0.0; 3]);
             assert!(
                 (half - 0.5).abs() < 0.1 && course.loads() == 1.0,
-                "{to_trust_s} s: {half}"
+                "{rise_s} s: {half}"
             );
         }
     }

@@ -27,7 +27,7 @@ use super::DEVIATIONS;
 const LASTS_S: f64 = 0.025;
 
 /// Returns the largest innovation that is used in full, rad.
-pub(crate) fn believed_rad(axis_model: &AxisModel, measured_rad2: f64) -> f64 {
+pub(crate) fn bound_rad(axis_model: &AxisModel, measured_rad2: f64) -> f64 {
     let servo_s = axis_model.periods.servo_s;
     let accelerated_rad = 0.5 * axis_model.parameters.torque_limit_nm
         / axis_model.parameters.inertia_kg_m2
@@ -52,10 +52,10 @@ impl Outliers {
         &mut self,
         repeats: bool,
         missed_rad: f64,
-        believed_rad: f64,
+        bound_rad: f64,
         servo_s: f64,
     ) -> f64 {
-        if missed_rad.abs() <= believed_rad {
+        if missed_rad.abs() <= bound_rad {
             self.for_s = 0.0;
             return missed_rad;
         }
@@ -65,7 +65,7 @@ impl Outliers {
         } else if repeats {
             0.0
         } else {
-            bounded(missed_rad, -believed_rad, believed_rad)
+            bounded(missed_rad, -bound_rad, bound_rad)
         }
     }
 }
@@ -77,22 +77,22 @@ mod tests {
     const SERVO_S: f64 = 0.001;
 
     #[test]
-    fn what_is_small_is_believed_and_what_is_large_only_where_it_lasts() {
+    fn a_small_innovation_is_used_and_a_large_one_only_where_it_lasts() {
         let mut outliers = Outliers::NONE;
-        let mut believed = |missed_rad| outliers.bounded_rad(false, missed_rad, 0.01, SERVO_S);
-        assert_eq!([0.0, 0.01, -0.009].map(&mut believed), [0.0, 0.01, -0.009]);
+        let mut used = |missed_rad| outliers.bounded_rad(false, missed_rad, 0.01, SERVO_S);
+        assert_eq!([0.0, 0.01, -0.009].map(&mut used), [0.0, 0.01, -0.009]);
         assert_eq!(
-            [1.0, -1.0, f64::INFINITY].map(&mut believed),
+            [1.0, -1.0, f64::INFINITY].map(&mut used),
             [0.01, -0.01, 0.01]
         );
         // One that is small begins the time anew.
-        assert_eq!(believed(0.001), 0.001);
-        let first = (0..100).position(|_| believed(1.0) == 1.0);
+        assert_eq!(used(0.001), 0.001);
+        let first = (0..100).position(|_| used(1.0) == 1.0);
         assert!(matches!(first, Some(24 | 25)), "{first:?}");
     }
 
     #[test]
-    fn of_a_frozen_encoder_nothing_is_believed_unless_the_axis_stands() {
+    fn nothing_of_a_frozen_encoder_is_used_unless_the_axis_stands() {
         let mut outliers = Outliers::NONE;
         let taken =
             [0.0, 0.005, 0.05, 0.1].map(|missed| outliers.bounded_rad(true, missed, 0.01, SERVO_S));

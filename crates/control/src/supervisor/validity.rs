@@ -22,7 +22,7 @@
 //! that engaged over the first 50 um left 13.8 um of the figure of eight on `workshop` in place of
 //! 0.4, and took 21 N m in place of 10.5. A wrong inertia shows where the speed changes, and not on
 //! the straight line after it: a wrong model stays wrong until it has held while the commanded
-//! speed changed as much as then (`proof.rs`). A learned model
+//! speed changed as much as then (`readmission.rs`). A learned model
 //! (`controller/lqg_identified/learning.rs`) replaces the nominal one without this record.
 //!
 //! A model has little weight and requests little if it has just begun, is not followed, is wrong,
@@ -42,8 +42,8 @@
 use crate::command::{FaultEvidence, Verdict};
 use crate::vector::{bounded, dot, smooth_step};
 
-use super::one_step::{Course, OneStep, RUN_S, TO_DOUBT_S};
-use super::proof::Proof;
+use super::one_step::{Course, FALL_S, OneStep, RUN_S};
+use super::readmission::Readmission;
 use super::{DEVIATIONS, NO_ERROR_MM2};
 
 /// Time over which m^2 is averaged, s.
@@ -58,14 +58,14 @@ const FAR: f64 = 2.0;
 
 /// Weights of a model, both 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Trusted {
+pub(crate) struct ModelWeights {
     /// Weight of the model near the reference: at 1 the regulator uses its lowest control weight.
     pub(crate) near: f64,
     /// Weight of the loads that the filter finds with the model.
     pub(crate) loads: f64,
 }
 
-impl Trusted {
+impl ModelWeights {
     /// Full weight.
     pub(crate) const FULLY: Self = Self {
         near: 1.0,
@@ -101,7 +101,7 @@ pub(crate) struct Validity<const N: usize> {
     /// this one began, s.
     beyond: [bool; 2],
     for_s: f64,
-    proof: Proof<N>,
+    readmission: Readmission<N>,
     course: Course,
     /// Weight of the models near the reference, 0 to 1.
     near: f64,
@@ -123,7 +123,7 @@ impl<const N: usize> Validity<N> {
             by_noise_mm2: 0.0,
             beyond: [false; 2],
             for_s: 0.0,
-            proof: Proof::NOT_NEEDED,
+            readmission: Readmission::NOT_NEEDED,
             course: Course::AS_SAID,
             near: 0.0,
             held_s: 0.0,
@@ -141,7 +141,8 @@ impl<const N: usize> Validity<N> {
 
     /// Restarts for other models: the errors of the earlier ones give no evidence on them.
     pub(crate) fn begin_model(&mut self) {
-        (self.missed_mm2, self.beyond, self.proof) = (0.0, [false; 2], Proof::NOT_NEEDED);
+        (self.missed_mm2, self.beyond, self.readmission) =
+            (0.0, [false; 2], Readmission::NOT_NEEDED);
         // The tool returns gently from its present place.
         self.near = 0.0;
     }
@@ -171,12 +172,13 @@ impl<const N: usize> Validity<N> {
             (self.for_s, self.beyond) = (0.0, [false, self.beyond[0]]);
         }
         self.beyond[0] |= self.is_beyond(1.0);
-        self.proof.take_in(path_mm, moves, self.misses(), servo_s);
+        self.readmission
+            .take_in(path_mm, moves, self.misses(), servo_s);
         let holds = followed && self.course.is_as_said() && !self.misses();
         let change = if holds {
-            servo_s / self.course.trust_time_s()
+            servo_s / self.course.rise_time_s()
         } else {
-            -servo_s / TO_DOUBT_S
+            -servo_s / FALL_S
         };
         self.near = bounded(self.near + change, 0.0, 1.0);
         let is_wrong = self.is_wrong();
@@ -213,8 +215,8 @@ impl<const N: usize> Validity<N> {
     }
 
     /// Returns the weights of the models.
-    pub(crate) fn trusted(&self) -> Trusted {
-        Trusted {
+    pub(crate) fn model_weights(&self) -> ModelWeights {
+        ModelWeights {
             near: smooth_step(self.near),
             loads: self.course.loads(),
         }
@@ -222,7 +224,7 @@ impl<const N: usize> Validity<N> {
 
     /// Returns true if the models are wrong.
     fn is_wrong(&self) -> bool {
-        self.misses() || self.proof.is_needed()
+        self.misses() || self.readmission.is_needed()
     }
 
     /// Returns the verdict on the models; its evidence is m and its permitted value.
@@ -231,7 +233,7 @@ impl<const N: usize> Validity<N> {
             let [found_mm, limit_mm] = [self.missed_mm2, self.allowed_mm2()].map(libm::sqrt);
             let evidence = Some(FaultEvidence { found_mm, limit_mm });
             Verdict::Wrong { evidence }
-        } else if self.proof.is_needed() {
+        } else if self.readmission.is_needed() {
             Verdict::Wrong { evidence: None }
         } else {
             Verdict::Sound
@@ -269,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_is_wrong_where_it_misses_more_than_noise_and_what_there_is_to_correct() {
+    fn a_model_is_wrong_where_it_misses_more_than_noise_and_the_error_to_correct() {
         for (missed_mm, open_mm, unforeseen_mm2, wrong) in [
             (0.0019, 0.0, 0.0, false),
             (0.0021, 0.0, 0.0, true),
@@ -306,11 +308,11 @@ mod tests {
     }
 
     #[test]
-    fn a_model_is_trusted_that_holds_and_is_followed_for_a_while() {
+    fn a_model_that_holds_and_is_followed_for_a_while_gets_its_full_weight() {
         let goes_on = |validity: &mut Validity<2>, missed_mm: f64, followed: bool, periods: u32| {
             (0..periods)
                 .for_each(|_| validity.take_in(&shown([missed_mm, 0.0]), followed, SERVO_S));
-            validity.trusted().near
+            validity.model_weights().near
         };
         let mut validity = Validity::unknown(0.0);
         assert_eq!(

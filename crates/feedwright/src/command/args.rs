@@ -102,7 +102,7 @@ Exit codes: 0 done, and within tolerance; 1 out of tolerance, worse than without
 2 an error, nothing was written; 130 interrupted.
 
 Environment: FEEDWRIGHT_CACHE is the folder of what is kept between runs, empty for none; NO_COLOR and TERM=dumb turn colours off, \
-TERM=dumb progress too; COLUMNS is the width of tables and messages where it is not that of the terminal.
+TERM=dumb progress too; COLUMNS is the width of tables and messages where it differs from the width of the terminal.
 
 First steps:
   feedwright run part.ngc

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::command::message::{INTERRUPTED, interrupted as tell_interrupted};
+use crate::command::message::{INTERRUPTED, interrupted as report_interrupted};
 use crate::command::progress::Bar;
 use crate::output::exit_without_files;
 
@@ -40,7 +40,7 @@ impl Console {
             if !interrupted.swap(true, Ordering::Relaxed) {
                 std::thread::spawn(|| {
                     std::thread::sleep(GRACE);
-                    tell_interrupted();
+                    report_interrupted();
                     exit_without_files(INTERRUPTED);
                 });
             }

@@ -127,11 +127,11 @@ impl LeftOut {
             (self.links, "linked folders"),
             (self.before, "named before"),
         ];
-        let told = counts
+        let reported = counts
             .iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, what)| format!("{what} {count}"));
-        told.collect::<Vec<_>>().join(", ")
+        reported.collect::<Vec<_>>().join(", ")
     }
 }
 

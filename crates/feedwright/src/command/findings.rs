@@ -89,7 +89,7 @@ impl Finding {
                 self.column + self.span.max(1) - 1
             );
         }
-        let told = self
+        let reported = self
             .hint
             .as_ref()
             .map_or_else(String::new, |hint| format!("\nhint: {hint}"));
@@ -97,7 +97,7 @@ impl Finding {
             "::{} {place},title={}::{}",
             self.level(),
             github_property(&self.code),
-            github_text(&format!("{}{told}", self.message))
+            github_text(&format!("{}{reported}", self.message))
         )
     }
 

@@ -7,17 +7,17 @@ use thiserror::Error;
 use crate::job::JobError;
 
 /// Number of faults of one kind that are shown.
-const TOLD: usize = 3;
+const REPORTED: usize = 3;
 
-/// Returns the faults without repeats: of each kind, the first [`TOLD`] remain, and the last of
+/// Returns the faults without repeats: of each kind, the first [`REPORTED`] remain, and the last of
 /// them gives the number of those left out.
 pub(crate) fn folded(faults: &[Diagnostic]) -> Vec<Diagnostic> {
-    let mut told: Vec<Diagnostic> = Vec::new();
+    let mut reported: Vec<Diagnostic> = Vec::new();
     for (at, fault) in faults.iter().enumerate() {
         let alike =
             |other: &&Diagnostic| (other.code, other.severity) == (fault.code, fault.severity);
         let before = faults[..at].iter().filter(alike).count();
-        if before >= TOLD {
+        if before >= REPORTED {
             continue;
         }
         let mut fault = fault.clone();
@@ -26,7 +26,7 @@ pub(crate) fn folded(faults: &[Diagnostic]) -> Vec<Diagnostic> {
             .filter(alike)
             .map(|other| other.line)
             .collect();
-        if let (true, [first, ..], [.., last]) = (before + 1 == TOLD, &rest[..], &rest[..]) {
+        if let (true, [first, ..], [.., last]) = (before + 1 == REPORTED, &rest[..], &rest[..]) {
             let lines = if first == last {
                 format!("line {first}")
             } else {
@@ -34,9 +34,9 @@ pub(crate) fn folded(faults: &[Diagnostic]) -> Vec<Diagnostic> {
             };
             fault.message += &format!("; and {} more like it, {lines}", rest.len());
         }
-        told.push(fault);
+        reported.push(fault);
     }
-    told
+    reported
 }
 
 /// The mistakes of a program with repeated ones left out.
@@ -68,7 +68,7 @@ mod tests {
     use feedwright_gcode::{CheckError, Program, Settings};
 
     #[test]
-    fn repeated_faults_are_counted_and_others_are_told() {
+    fn repeated_faults_are_counted_and_others_are_reported() {
         let lines: String = (0..9).map(|_| "G555\n").collect();
         let Err(CheckError::Faults(faults)) =
             Program::from_text("a.ngc", format!("{lines}G1 X1 F100 Q\nM2\n"))
@@ -76,19 +76,19 @@ mod tests {
         else {
             panic!("the program has faults")
         };
-        let told = folded(&faults);
+        let reported = folded(&faults);
         assert_eq!(
-            told.iter().map(|fault| fault.line).collect::<Vec<_>>(),
+            reported.iter().map(|fault| fault.line).collect::<Vec<_>>(),
             [1, 2, 3, 10]
         );
         assert!(
-            told[2]
+            reported[2]
                 .message
                 .ends_with("; and 6 more like it, lines 4 to 9"),
             "{}",
-            told[2].message
+            reported[2].message
         );
-        assert!(!told[1].message.contains("more") && !told[3].message.contains("more"));
+        assert!(!reported[1].message.contains("more") && !reported[3].message.contains("more"));
         assert_eq!(folded(&faults[..3]), faults[..3]);
     }
 }

@@ -54,7 +54,7 @@ pub fn remark(text: &str) {
 
 /// Reports the axis limits that are assumed because the planner needs limits that the machine file
 /// does not have.
-pub(crate) fn tell_assumed_limits(machine: &Machine, stages: Stages) {
+pub(crate) fn report_assumed_limits(machine: &Machine, stages: Stages) {
     if let Some(text) = machine
         .assumed_axis_limits()
         .filter(|_| stages.planner.needs_axes)
@@ -68,14 +68,9 @@ pub(crate) fn warn(report: Report) {
     show(&report);
 }
 
-/// Shows an error in a checked file, which is not an error of the command.
-pub(crate) fn tell(report: &Report) {
-    show(report);
-}
-
 /// Prints plain text where stderr shows no colors, and ASCII where it shows no more. Leaves out
 /// causes that the message already contains.
-fn show(report: &Report) {
+pub(crate) fn show(report: &Report) {
     let characters = if shows_unicode() {
         ThemeCharacters::unicode()
     } else {

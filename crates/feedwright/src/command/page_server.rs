@@ -151,8 +151,10 @@ impl Site {
         }) else {
             return;
         };
-        let (status, kind, body) =
-            request.map_or_else(|| told("400 Bad Request"), |request| self.answer(&request));
+        let (status, kind, body) = request.map_or_else(
+            || reported("400 Bad Request"),
+            |request| self.answer(&request),
+        );
         let length = body.len();
         let head = format!(
             "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{HEADERS}\r\n"
@@ -168,10 +170,10 @@ impl Site {
         let (Some(method), Some(target), Some("HTTP/1.1"), None) =
             (words.next(), words.next(), words.next(), words.next())
         else {
-            return told("400 Bad Request");
+            return reported("400 Bad Request");
         };
         if method != "GET" {
-            return told("405 Method Not Allowed");
+            return reported("405 Method Not Allowed");
         }
         let headers: Vec<_> = lines.filter_map(|line| line.split_once(':')).collect();
         let named = |name: &str| {
@@ -186,14 +188,14 @@ impl Site {
                 .iter()
                 .any(|origin| *origin != format!("http://{host}"))
         {
-            return told("403 Forbidden");
+            return reported("403 Forbidden");
         }
         let secret = target
             .strip_prefix('/')
             .and_then(|path| path.split_once('/'));
         match secret.filter(|(secret, _)| *secret == self.secret) {
             Some((_, path)) => self.file(path),
-            None => told("403 Forbidden"),
+            None => reported("403 Forbidden"),
         }
     }
 
@@ -228,11 +230,11 @@ impl Site {
             );
         }
         let Some(file) = number("files/").and_then(|number| self.files.get(number as usize)) else {
-            return told("404 Not Found");
+            return reported("404 Not Found");
         };
         match content(file) {
             Ok(bytes) => ("200 OK", "application/octet-stream", bytes),
-            Err(_) => told("404 Not Found"),
+            Err(_) => reported("404 Not Found"),
         }
     }
 }
@@ -252,7 +254,7 @@ fn content(path: &PathBuf) -> io::Result<Vec<u8>> {
 }
 
 /// An answer that says no more than its status.
-fn told(status: &'static str) -> Answer {
+fn reported(status: &'static str) -> Answer {
     (status, "text/plain", format!("{status}\n").into_bytes())
 }
 

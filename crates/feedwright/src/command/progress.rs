@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn the_time_left_is_told_once_it_is_known() {
+    fn the_time_left_is_reported_once_it_is_known() {
         let shown = |seconds: u64, done: u64| left(Duration::from_secs(seconds), done, 10);
         assert_eq!([shown(0, 0), shown(5, 10)], ["", ""]);
         assert_eq!(

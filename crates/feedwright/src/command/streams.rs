@@ -113,7 +113,7 @@ impl Write for InchLines {
 
 /// Reports the files that were written. The standard output is not listed, because it is not a
 /// file.
-pub fn tell_written<'a>(
+pub fn report_written<'a>(
     out: &mut dyn Write,
     outputs: impl IntoIterator<Item = Option<&'a Path>>,
 ) -> io::Result<()> {

@@ -125,14 +125,14 @@ fn meant_parameter(entry: &Entry, name: &str) -> String {
     if names.is_empty() {
         return "nothing of it can be set".to_owned();
     }
-    let told = format!(
-        "feedwright controllers {} tells of {}",
+    let reported = format!(
+        "feedwright controllers {} describes {}",
         entry.name,
         names.join(", ")
     );
     nearest(name, &names).map_or_else(
-        || told.clone(),
-        |meant| format!("did you mean '{meant}'? {told}"),
+        || reported.clone(),
+        |meant| format!("did you mean '{meant}'? {reported}"),
     )
 }
 
@@ -153,7 +153,7 @@ mod tests {
     use super::super::CONTROLLERS;
     use super::*;
 
-    fn told(text: &str) -> String {
+    fn reported(text: &str) -> String {
         let error =
             Setting::parse(text, CONTROLLERS.find("two-dimensional"), CONTROLLERS).unwrap_err();
         format!("{error}; {}", error.hint)
@@ -182,18 +182,18 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_set_is_told_with_a_remedy() {
+    fn what_cannot_be_set_is_reported_with_a_remedy() {
         assert_eq!(
-            told("knots"),
+            reported("knots"),
             "--set knots: the value is missing; write --set knots=VALUE"
         );
-        assert!(told("knot=3").contains("has no parameter 'knot'; did you mean 'knots'?"));
-        assert!(told("uncorrected.kp=3").contains("nothing of it can be set"));
-        assert!(told("feedforwrd.kp=3").contains("did you mean 'feedforward'?"));
-        assert!(told("knots=ten").contains("'ten' is no number; knots is 1 to 20, whole"));
+        assert!(reported("knot=3").contains("has no parameter 'knot'; did you mean 'knots'?"));
+        assert!(reported("uncorrected.kp=3").contains("nothing of it can be set"));
+        assert!(reported("feedforwrd.kp=3").contains("did you mean 'feedforward'?"));
+        assert!(reported("knots=ten").contains("'ten' is no number; knots is 1 to 20, whole"));
         for value in ["21", "0", "2.5", "nan", "-1", "1e400"] {
             assert!(
-                told(&format!("knots={value}"))
+                reported(&format!("knots={value}"))
                     .contains("knots is 1 to 20, whole; its default is 1"),
                 "{value}"
             );

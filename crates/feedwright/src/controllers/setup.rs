@@ -92,9 +92,7 @@ pub enum ModelMisfit {
         cause: NotIdentified,
     },
     /// The model was trained for another period.
-    #[error(
-        "the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s"
-    )]
+    #[error("the model was trained for a {period} of {found_s} s, and {of} has {needed_s} s")]
     Period {
         /// Servo period or feed period.
         period: &'static str,
@@ -210,7 +208,7 @@ impl Entry {
         )?;
         let found_s = model.period().feed_period_s;
         let hint = match self.parameter("feed_period_s") {
-            Some(_) => format!("--set feed_period_s={found_s} takes that of the model; {anew}"),
+            Some(_) => format!("--set feed_period_s={found_s} takes the one of the model; {anew}"),
             None => anew,
         };
         period("feed period", controller, found_s, feed_period_s, hint)
@@ -257,7 +255,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Reports the progress of a training to `progress`, 0 to 1.
-    pub fn telling(self, progress: &'a mut dyn FnMut(f64)) -> Self {
+    pub fn reporting(self, progress: &'a mut dyn FnMut(f64)) -> Self {
         Self {
             progress: Some(progress),
             ..self
@@ -300,7 +298,7 @@ impl<'a> Setup<'a> {
         self.found.as_ref()
     }
 
-    fn tell(&mut self, part: f64) {
+    fn report_progress(&mut self, part: f64) {
         if let Some(progress) = &mut self.progress {
             progress(part);
         }
@@ -348,7 +346,7 @@ impl<'a> Setup<'a> {
         let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
         let found = |i: usize| {
             let found = identify_axis(&recording, i, &self.known)?;
-            Ok(found.believed(self.known.axis(i)))
+            Ok(found.assumed(self.known.axis(i)))
         };
         let axes = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
         self.known = self
@@ -415,8 +413,8 @@ impl<'a> Setup<'a> {
                     ..Excitation::general()
                 };
                 let training = Training::default();
-                let tell = &mut |part| self.tell(part);
-                let net = identified(machine, &excitation, &training, seed, tell).net;
+                let report_progress = &mut |part| self.report_progress(part);
+                let net = identified(machine, &excitation, &training, seed, report_progress).net;
                 let servo_periods = self.known.period.servo_periods(feed_period_s);
                 Some(TrainedModel {
                     servo_s,
@@ -515,7 +513,7 @@ impl<'a> Setup<'a> {
                     &excitation,
                     &Training::default(),
                     seed,
-                    &mut |part| self.tell(part),
+                    &mut |part| self.report_progress(part),
                 );
                 Model::of_contour(&recording, &trained, self.response_s::<N>(), origin)
             }
@@ -585,7 +583,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_uncorrected()
+    fn where_nothing_is_identified_the_training_fails_and_the_controller_reports_that_it_cuts_uncorrected()
      {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
         // The loop takes longer to settle than the excitation lasts; with long servo periods its
@@ -612,10 +610,10 @@ mod tests {
         let mut setup = Setup::new(&machine, &choices);
         assert_eq!(setup.remark(entry), None);
         let _ = super::super::Make::<2>::make(entry, &mut setup);
-        let told = setup.remark(entry).unwrap().to_string();
+        let reported = setup.remark(entry).unwrap().to_string();
         assert!(
-            told.starts_with("lqg-identified cuts uncorrected: the axes of `tnv40` cannot"),
-            "{told}"
+            reported.starts_with("lqg-identified cuts uncorrected: the axes of `tnv40` cannot"),
+            "{reported}"
         );
     }
 }

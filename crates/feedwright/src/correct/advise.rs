@@ -253,7 +253,7 @@ impl AdviseJob {
         let mut steps =
             (self.controller.identifier.is_some()).then(|| identifying(&self.machine, watch));
         let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
-        let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+        let mut setup = Setup::new(&self.machine, &self.choices).reporting(&mut progress);
         let controller = Make::<N>::make(self.controller, &mut setup);
         let mut bench = FeedBench::<N> {
             machine: &self.machine,

@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn acceleration_is_that_of_a_circle_at_a_speed_that_rises() {
+    fn acceleration_agrees_with_a_circle_at_a_speed_that_rises() {
         let circle = Reader::from_text(
             "circle.ngc",
             "G17 G21 G90 G61 F600\nG2 X0 Y0 I10 J0\nM2\n",

@@ -129,7 +129,7 @@ impl Job {
             let mut steps = (entry.identifier.is_some() && model.is_none())
                 .then(|| identifying(&self.machine, watch));
             let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
-            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+            let mut setup = Setup::new(&self.machine, &self.choices).reporting(&mut progress);
             let mut controller = match (guest.filter(|_| judged), model) {
                 (Some(guest), _) => guest.make(&mut setup),
                 (None, Some(model)) => entry.make_with::<N>(setup, model)?,

@@ -25,6 +25,6 @@ impl CheckedJob<'_> {
             ..job.clone()
         };
         job.check_model(self.axes)?;
-        Ok((Cow::Owned(job), found.doubts))
+        Ok((Cow::Owned(job), found.warnings))
     }
 }

@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_told_apart_as_halcmd_does() {
+    fn words_are_separated_as_halcmd_does() {
         let script = script(
             "loadrt [KINS]KINEMATICS\nnet a hm2_[B](K).0.x => b #c\nsetp a.b \"one two\" # d\nnet a \\\n  b c\n#net x\nsetp f [B]MISSING\n",
         );

@@ -22,8 +22,8 @@ const ACCELERATIONS_MM_S2: [f64; 2] = [0.1, 1e6];
 pub(crate) fn machine_file(joints: &SetupJoints, ini: &IniFile, names: &SetupNames) -> String {
     let mut text = format!(
         "# What {} says of the machine: written by feedwright linuxcnc setup.\n\
-         # Lengths are in mm{}. It is enough for feedwright excite. What comes from no line of the INI file is that of the machine\n\
-         # 'workshop', and unknown: lead, inertia, friction, gains of the speed loop, delays. feedwright identify finds what positions tell.\n\n\
+         # Lengths are in mm{}. It is enough for feedwright excite. What no line of the INI file states comes from the machine\n\
+         # 'workshop', and is unknown: lead, inertia, friction, gains of the speed loop, delays. feedwright identify finds what positions determine.\n\n\
          format = {MACHINE_FORMAT}\n\
          base = \"workshop\"\n\
          name = {}\n\

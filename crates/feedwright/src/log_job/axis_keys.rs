@@ -23,7 +23,7 @@ pub(super) struct AxisKey {
     pub(super) value: f64,
     pub(super) comment: String,
     /// True if the value comes from the log. Other values are given, kept from before, or assumed.
-    pub(super) is_told: bool,
+    pub(super) is_identified: bool,
 }
 
 /// The keys of an identified axis, and those of its transmission, none where it is rigid; `servo_s`
@@ -38,46 +38,46 @@ pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> [Vec<AxisKey>; 2] {
     [keys, transmission(found, mechanics_s)]
 }
 
-fn told(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
+fn identified_key(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
     AxisKey {
         name,
         // A log determines no more digits.
         value: rounded(value, 6),
         comment: comment.into(),
-        is_told: true,
+        is_identified: true,
     }
 }
 
 fn assumed(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
     AxisKey {
-        is_told: false,
-        ..told(name, value, comment)
+        is_identified: false,
+        ..identified_key(name, value, comment)
     }
 }
 
 /// A key by where its number comes from.
 fn by_source(name: &'static str, value: f64, source: NumberSource) -> AxisKey {
-    let is_told = matches!(
+    let is_identified = matches!(
         source,
         NumberSource::Identified | NumberSource::TorqueColumn
     );
     AxisKey {
-        is_told,
-        ..told(name, value, source.word())
+        is_identified,
+        ..identified_key(name, value, source.word())
     }
 }
 
 /// Noise: of the encoder, and what the free run leaves, as a torque.
 fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     if found.step_um > 0.0 {
-        keys.push(told(
+        keys.push(identified_key(
             "encoder_step_um",
             found.step_um.min(1e3),
             "as the log shows them",
         ));
     }
     if found.noise_um > 0.0 {
-        keys.push(told(
+        keys.push(identified_key(
             "encoder_noise_um",
             found.noise_um.min(1e3),
             "by third differences of the actual position",
@@ -89,8 +89,8 @@ fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
             "moves the axis as what the free run leaves: {} um RMS",
             digits(residual.left_um)
         );
-        keys.push(told("torque_noise_nm", nm.min(1e3), comment));
-        keys.push(told(
+        keys.push(identified_key("torque_noise_nm", nm.min(1e3), comment));
+        keys.push(identified_key(
             "torque_noise_s",
             residual.correlation_s,
             "as long as that is correlated",
@@ -132,7 +132,7 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
         inertia * viscous,
         of_viscous,
     ));
-    keys.push(told(
+    keys.push(identified_key(
         "coulomb_friction_nm",
         nm * get(ModelTerm::Coulomb),
         interval(found, ModelTerm::Coulomb, nm),
@@ -153,7 +153,7 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
         ""
     };
     let comment = format!("{}{held}", interval(found, ModelTerm::Offset, nm));
-    keys.push(told(
+    keys.push(identified_key(
         "coulomb_asymmetry_nm",
         nm * offset.clamp(-most, most),
         comment,
@@ -169,16 +169,16 @@ fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
         NumberSource::Assumed => "from Kp Kv / J and (Kv + B) / J, B being assumed",
         _ => "from Kp Kv / J and (Kv + B) / J",
     };
-    keys.push(told("kp_1_s", found.axis_model().kp_1_s(), apart));
+    keys.push(identified_key("kp_1_s", found.axis_model().kp_1_s(), apart));
     keys.push(assumed("kd", 0.0, "assumed"));
-    keys.push(told(
+    keys.push(identified_key(
         "kv_nm_s_per_rad",
         found.inertia().0 * found.axis_model().speed_gain_1_s(),
         apart,
     ));
     let limit = get(ModelTerm::AccelerationLimit);
     if limit > 0.0 {
-        keys.push(told(
+        keys.push(identified_key(
             "torque_limit_nm",
             nm * limit,
             interval(found, ModelTerm::AccelerationLimit, nm),
@@ -200,7 +200,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let get = |term| found.axis_model().get(term);
     let late_s = get(ModelTerm::CommandDelay);
     if late_s > 0.0 {
-        keys.push(told(
+        keys.push(identified_key(
             "command_delay_s",
             late_s,
             "commands reach the position loop late, by whole servo periods",
@@ -231,7 +231,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
             }
         };
         let comment = format!("{} to {}", end(integral + half), end(integral - half));
-        keys.push(told(
+        keys.push(identified_key(
             "speed_integral_s",
             (1.0 / integral).min(10.0),
             comment,
@@ -245,7 +245,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
         } else {
             "given".to_owned()
         };
-        keys.push(told(
+        keys.push(identified_key(
             "speed_window_s",
             get(ModelTerm::SpeedWindow),
             of_window,
@@ -270,7 +270,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
             "a time constant of {} s",
             interval(found, ModelTerm::FilterTime, 1.0)
         );
-        keys.push(told(
+        keys.push(identified_key(
             "torque_filter_hz",
             (1.0 / (TAU * filter)).min(1e5),
             comment,
@@ -299,7 +299,7 @@ fn friction_extras(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
             "a part of {} of the Coulomb friction",
             interval(found, ModelTerm::Stribeck, 1.0)
         );
-        keys.push(told("stribeck_nm", nm, comment));
+        keys.push(identified_key("stribeck_nm", nm, comment));
         optional(
             keys,
             found,
@@ -335,7 +335,7 @@ fn optional(
 ) {
     let was = found.facts.before.map_or(0.0, |before| before.get(term));
     if value > 0.0 || was > 0.0 {
-        keys.push(told(name, value, interval(found, term, scale)));
+        keys.push(identified_key(name, value, interval(found, term, scale)));
     }
 }
 
@@ -358,18 +358,18 @@ fn transmission(found: &FoundAxis, mechanics_s: f64) -> Vec<AxisKey> {
     };
     let seconds = interval(found, ModelTerm::Resonance, 1.0);
     vec![
-        told(
+        identified_key(
             "table_share",
             screw.table_share,
             interval(found, ModelTerm::TableShare, 1.0),
         ),
-        told(
+        identified_key(
             "resonance_hz",
             screw.resonance_hz,
             format!("a time constant of {seconds} s"),
         ),
         assumed("damping_ratio", screw.damping_ratio, "assumed"),
-        told(
+        identified_key(
             "backlash_um",
             screw.backlash_um,
             interval(found, ModelTerm::Backlash, 1e3),

@@ -29,7 +29,7 @@ pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()>
         .of_samples
         .map_or(String::new(), |all| format!(", windows of {all}"));
     let introduction = format!(
-        "The law of each axis, found from commanded and actual positions ({}, {} samples of {} ms{used}). It was fitted on one part of the record and is judged by \
+        "The model of each axis, found from commanded and actual positions ({}, {} samples of {} ms{used}). It was fitted on one part of the record and is judged by \
          the other: a free run gets the commands and nothing else. Intervals are those of 90 %.",
         log.format,
         log.time_s.len(),

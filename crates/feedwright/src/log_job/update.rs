@@ -38,14 +38,14 @@ pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, 
         let axis = within(axes, name, false)?;
         let [keys, of_screw] = axis_keys(found, servo_s);
         keys.iter()
-            .filter(|key| key.is_told)
+            .filter(|key| key.is_identified)
             .for_each(|key| set(axis, key));
         if !of_screw.is_empty() {
             let transmission = within(axis, "transmission", false)?;
             let is_new = !transmission.contains_key("damping_ratio");
             of_screw
                 .iter()
-                .filter(|key| key.is_told || is_new)
+                .filter(|key| key.is_identified || is_new)
                 .for_each(|key| set(transmission, key));
         }
     }

@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::Told;
+use super::FromLog;
 use crate::store::content_key;
 
 /// The lines.
@@ -23,7 +23,8 @@ struct BuiltInLog {
     /// Hash of the content. It is the first key: lines are found by it without parsing the others.
     content: String,
     text: String,
-    doubts: Vec<String>,
+    #[serde(rename = "doubts")]
+    warnings: Vec<String>,
     fitting: Vec<Vec<(usize, String)>>,
 }
 
@@ -38,11 +39,11 @@ fn beginning(content: &Value) -> Option<String> {
 }
 
 /// Returns the result that is shipped with the program for a content.
-pub(super) fn told(content: &Value) -> Option<Told> {
+pub(super) fn from_log(content: &Value) -> Option<FromLog> {
     let beginning = beginning(content)?;
     let BuiltInLog {
         text,
-        doubts,
+        warnings,
         fitting,
         ..
     } = serde_json::from_str(lines().find(|line| line.starts_with(&beginning))?).ok()?;
@@ -54,17 +55,17 @@ pub(super) fn told(content: &Value) -> Option<Told> {
         Some(lines.join("\n"))
     };
     let fitting = fitting.iter().map(with).collect::<Option<_>>()?;
-    Some(Told {
+    Some(FromLog {
         text,
-        doubts,
+        warnings,
         fitting,
     })
 }
 
 /// The line of a content. A machine that fits as well has the lines of the text with other values;
 /// one that has not is left out.
-pub(super) fn line(content: &Value, told: &Told) -> String {
-    let lines: Vec<&str> = told.text.split('\n').collect();
+pub(super) fn line(content: &Value, from_log: &FromLog) -> String {
+    let lines: Vec<&str> = from_log.text.split('\n').collect();
     let changes = |fits: &String| {
         let of_fits: Vec<&str> = fits.split('\n').collect();
         let changed = lines
@@ -75,7 +76,7 @@ pub(super) fn line(content: &Value, told: &Told) -> String {
         let changed = changed.map(|(number, (_, other))| (number, (*other).to_owned()));
         (of_fits.len() == lines.len()).then(|| changed.collect::<Vec<_>>())
     };
-    let fitting = told
+    let fitting = from_log
         .fitting
         .iter()
         .filter_map(changes)
@@ -83,8 +84,8 @@ pub(super) fn line(content: &Value, told: &Told) -> String {
         .collect();
     let line = BuiltInLog {
         content: content_key(content).unwrap_or_default(),
-        text: told.text.clone(),
-        doubts: told.doubts.clone(),
+        text: from_log.text.clone(),
+        warnings: from_log.warnings.clone(),
         fitting,
     };
     serde_json::to_string(&line).unwrap_or_default()

@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn half_circles_helices_and_rapids_are_none() {
+    fn half_circles_helices_and_rapids_are_not_circles() {
         let none = "G0 X0 Y0\nG2 X20 Y0 I10 J0 F3000\nG3 X40 Y0 I10 J0\nG2 X40 Y0 Z-1 I10 J0\nG0 X0 Y0\nM2\n";
         assert_eq!(circles_of(none), []);
         let many: String = (0..100)

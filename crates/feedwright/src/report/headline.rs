@@ -506,7 +506,7 @@ mod tests {
     }
 
     #[test]
-    fn the_torque_is_that_of_the_axis_on_which_it_rises_most() {
+    fn the_torque_belongs_to_the_axis_on_which_it_rises_most() {
         let torque = |peaks_nm: [f64; 2]| {
             let text = text(
                 vec![

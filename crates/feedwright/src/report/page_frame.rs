@@ -82,7 +82,7 @@ mod tests {
 
     /// The example of CSP3, section 8.3: `alert('Hello, world.');`.
     #[test]
-    fn a_hash_is_that_of_the_standard() {
+    fn a_hash_agrees_with_the_standard() {
         assert_eq!(
             allowed("alert('Hello, world.');"),
             " 'sha256-qznLcsROx4GACP2dm0UCKCzCG+HiZ1guq6ZZDob/Tng='"

@@ -283,7 +283,7 @@ mod tests {
 
     /// A command along x^2 + y^2 = r^2 has v^2 / r, a jump over a rest has none.
     #[test]
-    fn the_acceleration_of_the_command_is_that_of_its_curve() {
+    fn the_acceleration_of_the_command_follows_from_its_curve() {
         let (radius_mm, speed_mm_s) = (10.0, 50.0);
         let at = |t_s: f64| {
             let angle: f64 = speed_mm_s / radius_mm * t_s;

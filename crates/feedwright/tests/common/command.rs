@@ -125,7 +125,7 @@ impl Ran {
     }
 
     /// Returns its stdout as one line: lines are wrapped to the width of the terminal.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn reported(&self) -> String {
         self.stdout.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
@@ -159,7 +159,11 @@ impl Ran {
             .filter(|word| !word.is_empty());
         let message = message.collect::<Vec<_>>().join(" ");
         for part in says {
-            assert!(message.contains(part), "not told: {part}\n{}", self.stderr);
+            assert!(
+                message.contains(part),
+                "not reported: {part}\n{}",
+                self.stderr
+            );
         }
     }
 }

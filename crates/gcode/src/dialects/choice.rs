@@ -112,7 +112,7 @@ pub(super) fn machine(
         Dialect::FanucLathe
     };
     // Few signs against many: read, but not in silence.
-    let warning = evidence.doubt().map(|(lathe, mill)| {
+    let warning = evidence.conflict().map(|(lathe, mill)| {
         let message = format!(
             "signs of a lathe (line {}: {}) and of a mill (line {}: {}) stand in one program",
             lathe.line, lathe.what, mill.line, mill.what
@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn dialects_are_told_apart() {
+    fn dialects_are_distinguished() {
         assert_eq!(dialect("G21\nG0 X1\nM2"), Dialect::LinuxCnc);
         assert_eq!(dialect("%\nO1234 (PART)\nG90 G0 X1"), Dialect::FanucMill);
         assert_eq!(
@@ -462,13 +462,13 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_that_is_in_doubt_is_asked_for() {
-        let doubt = choose(b"O1\nG50 S2500\nG43 H1", &"test".into(), None)
+    fn an_unclear_machine_is_asked_for() {
+        let conflict = choose(b"O1\nG50 S2500\nG43 H1", &"test".into(), None)
             .unwrap_err()
             .to_string();
         assert!(
-            doubt.contains("line 2 (G50 S") && doubt.contains("line 3 (G43"),
-            "{doubt}"
+            conflict.contains("line 2 (G50 S") && conflict.contains("line 3 (G43"),
+            "{conflict}"
         );
         let known = choose(
             b"O1\nG50 S2500\nG43 H1",

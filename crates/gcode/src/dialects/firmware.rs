@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn macros_and_texts_are_told_from_gcode() {
+    fn macros_and_texts_are_distinguished_from_gcode() {
         let printer = |line: &str| command(line.as_bytes(), Dialect::Printer);
         assert_eq!(printer("START_PRINT BED=60"), Some(FirmwareCommand::Acts));
         assert_eq!(printer("G29 ; level"), Some(FirmwareCommand::Acts));

@@ -187,7 +187,7 @@ impl Flow {
         self.label_key(head);
         match self.labels.get(&self.key) {
             Some(&other) if other != line => {
-                let message = format!("the label {} is that of line {other} already", head.shown());
+                let message = format!("line {other} has the label {} already", head.shown());
                 Err(LineFault::new("gcode::o_word", head.at.clone(), message)
                     .hint("give every subroutine, branch and loop a number of its own"))
             }

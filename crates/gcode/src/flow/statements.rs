@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn statements_are_told_from_blocks() {
+    fn statements_are_distinguished_from_blocks() {
         assert_eq!(read("IF [#5 GT 4] GOTO 10"), Some(Statement::Goto(10)));
         assert_eq!(read("IF[#1EQ#0]GOTO10"), Some(Statement::Nothing));
         assert_eq!(read("GOTO#7 (on)"), Some(Statement::Goto(7)));

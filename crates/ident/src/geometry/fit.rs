@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use super::circularity::Circularity;
 use super::readings::{
-    KnownScrew, WINDUP_DOUBT, binned, repeatability_um, table_of, take_off_windup,
+    KnownScrew, WINDUP_UNCERTAINTY, binned, repeatability_um, table_of, take_off_windup,
 };
 use super::unknowns::{PAIRS, Unknown, UnknownKind, angle, shows_turns, unknowns};
 use crate::model::version;
@@ -217,7 +217,7 @@ impl GeometryFit {
         let solution = RankedLeastSquares::default();
         let correlation = vec![1.0; sets.len()];
         let windup_std_um =
-            screws.map(|screw| screw.map_or(0.0, |screw| WINDUP_DOUBT * screw.windup_um));
+            screws.map(|screw| screw.map_or(0.0, |screw| WINDUP_UNCERTAINTY * screw.windup_um));
         Ok(Self {
             sets,
             seen,
@@ -437,7 +437,7 @@ impl GeometryFit {
                 ][pair] = found.std;
             }
         }
-        self.say_what_is_not_told();
+        self.report_undetermined();
         self.tables(&mut file);
         let sets = (0..self.sets.len())
             .map(|at| self.of_set(at, &file))
@@ -519,7 +519,7 @@ impl GeometryFit {
         }
     }
 
-    fn say_what_is_not_told(&mut self) {
+    fn report_undetermined(&mut self) {
         let offset = NUISANCES * self.sets.len();
         for (_, unknown) in self
             .unknowns

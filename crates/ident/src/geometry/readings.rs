@@ -32,7 +32,7 @@ impl KnownScrew {
 
 /// Part of the windup by which it may be wrong. Vibration carries the table over a part of its
 /// friction, and winds the screw up by less: on `router` by 5 to 6 of 67 um.
-pub(super) const WINDUP_DOUBT: f64 = 0.1;
+pub(super) const WINDUP_UNCERTAINTY: f64 = 0.1;
 
 /// Takes the lost motion by windup off the deviations of a set; its geometry is then without.
 pub(super) fn take_off_windup(set: &mut MeasuredSet, axis: usize, windup_um: f64) {

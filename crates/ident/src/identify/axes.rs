@@ -69,11 +69,11 @@ pub fn train_axes<const N: usize>(
     let estimates = map_in_parallel(0..N, estimate)
         .into_iter()
         .collect::<Result<Vec<_>, _>>()?;
-    let believed = |of: &Known| {
-        of.with_axes(|i, axis| estimates.get(i).map_or(*axis, |found| found.believed(axis)))
+    let assumed = |of: &Known| {
+        of.with_axes(|i, axis| estimates.get(i).map_or(*axis, |found| found.assumed(axis)))
     };
-    let statistics = axis_statistics(&recordings.statistics, &believed(known));
-    let here = believed(used_on);
+    let statistics = axis_statistics(&recordings.statistics, &assumed(known));
+    let here = assumed(used_on);
     let axes = IdentifiedAxes {
         periods: used_on.period.periods(),
         axes: std::array::from_fn(|i| here.axis(i).nominal.taking(&[Part::Noise], &statistics[i])),

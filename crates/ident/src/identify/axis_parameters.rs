@@ -141,7 +141,7 @@ impl AxisEstimate {
     /// Returns the axis as known after the identification. Only the drive comes from its data
     /// sheets.
     #[must_use]
-    pub fn believed(&self, axis: &KnownAxis) -> KnownAxis {
+    pub fn assumed(&self, axis: &KnownAxis) -> KnownAxis {
         let nominal = with_identified(&axis.nominal, &self.parameters);
         let less_nm = axis.nominal.coulomb_friction_nm - nominal.coulomb_friction_nm;
         KnownAxis {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_tell_the_parameters_is_refused_with_the_reason() {
+    fn a_log_that_does_not_determine_the_parameters_is_refused_with_the_reason() {
         let known = known();
         let refused = |recording: &Recording<1>| identify_axis(recording, 0, &known).unwrap_err();
         let sine = |k: usize| libm::sin(0.01 * k as f64);
@@ -313,16 +313,16 @@ mod tests {
             left_um: 0.0,
             steps: 0,
         };
-        let believed = found.believed(axis);
+        let assumed = found.assumed(axis);
         assert_eq!(
-            believed.nominal.acceleration_feedforward,
+            assumed.nominal.acceleration_feedforward,
             0.5 * axis.nominal.acceleration_feedforward
         );
         assert_eq!(
-            believed.nominal.kv_nm_s_per_rad,
+            assumed.nominal.kv_nm_s_per_rad,
             axis.nominal.kv_nm_s_per_rad
         );
-        let more_nm = believed.spare_torque_nm - axis.spare_torque_nm;
+        let more_nm = assumed.spare_torque_nm - axis.spare_torque_nm;
         assert!(
             (more_nm - axis.nominal.coulomb_friction_nm).abs() < 1e-12,
             "{more_nm}"

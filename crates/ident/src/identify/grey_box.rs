@@ -146,17 +146,17 @@ pub(crate) type TorqueValues<'a> = Option<&'a [f64]>;
 /// Part of the work until it is known whether position loops have commands late.
 const WITHOUT_DELAY: f64 = 0.6;
 
-/// Identifies axes that were recorded together. `tell` receives the completed part of the work, 0
-/// to 1, and returns whether to go on.
+/// Identifies axes that were recorded together. `progress` receives the completed part of the
+/// work, 0 to 1, and returns whether to go on.
 ///
 /// # Errors
-/// Fails if a record does not determine the model of an axis, or if `tell` ends the run.
+/// Fails if a record does not determine the model of an axis, or if `progress` ends the run.
 pub fn identify_machine(
     records: &[AxisRecord<'_>],
     torques: &[TorqueValues<'_>],
     time_s: &[f64],
     options: &GreyBoxOptions,
-    mut tell: impl FnMut(f64) -> bool,
+    mut progress: impl FnMut(f64) -> bool,
 ) -> Result<FoundMachine, NotFound> {
     let first = records.first().ok_or(NotFound::NoAxis)?;
     let split = match &options.times_s {
@@ -180,7 +180,9 @@ pub fn identify_machine(
             let facts = facts.get(i).copied().unwrap_or_default();
             let torque = torques.get(i).copied().flatten();
             let done = |part: f64| from + (to - from) * (i as f64 + part) / records.len() as f64;
-            model_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))
+            model_fit::find(record, torque, &split, facts, &mut |part| {
+                progress(done(part))
+            })
         };
         records.iter().enumerate().map(axis).collect()
     };
@@ -190,10 +192,10 @@ pub fn identify_machine(
         let delayed = find(&facts, WITHOUT_DELAY, 1.0)?;
         let left = |axes: &[FoundAxis]| axes.iter().map(|axis| libm::log(axis.fit_um)).sum::<f64>();
         if left(&delayed) < left(&axes) {
-            let told = axes.iter().map(|axis| axis.facts).collect::<Vec<_>>();
+            let stated = axes.iter().map(|axis| axis.facts).collect::<Vec<_>>();
             axes = delayed
                 .into_iter()
-                .zip(told)
+                .zip(stated)
                 .map(|(axis, facts)| FoundAxis { facts, ..axis })
                 .collect();
             axes.iter_mut().for_each(|axis| {

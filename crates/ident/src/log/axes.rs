@@ -170,7 +170,7 @@ fn units(
             found.push(unit);
         }
     });
-    let mut tell = |unit: PositionUnit, because: &str| {
+    let mut decided = |unit: PositionUnit, because: &str| {
         findings.push(LogFinding::PositionUnit {
             unit,
             because: because.to_owned(),
@@ -178,17 +178,17 @@ fn units(
     };
     let otherwise = match (everywhere, &found[..]) {
         (Some(unit), _) => {
-            tell(unit, "a line of the file says so");
+            decided(unit, "a line of the file says so");
             unit
         }
         (None, [unit]) => {
-            tell(*unit, "the column says so");
+            decided(*unit, "the column says so");
             *unit
         }
         (None, [first, ..]) => {
             found
                 .iter()
-                .for_each(|unit| tell(*unit, "some columns say so"));
+                .for_each(|unit| decided(*unit, "some columns say so"));
             *first
         }
         (None, []) => by_size(table, roles, clock, findings),

@@ -32,7 +32,7 @@ const UNEVEN_GAP_STEPS: f64 = 3.0;
 /// Part of the usual step by which steps differ on an even clock.
 const EVEN: f64 = 0.1;
 /// Number of gaps that are reported one by one.
-const GAPS_TOLD: usize = 5;
+const GAPS_REPORTED: usize = 5;
 
 /// The clock of a table.
 pub(super) fn of_table(
@@ -131,7 +131,7 @@ fn unit(
     step: f64,
     findings: &mut Vec<LogFinding>,
 ) -> Result<TimeUnit, LogError> {
-    let mut tell = |unit: TimeUnit, because: String| {
+    let mut decided = |unit: TimeUnit, because: String| {
         findings.push(LogFinding::TimeUnit { unit, because });
         Ok(unit)
     };
@@ -141,13 +141,13 @@ fn unit(
     let stated =
         TimeUnit::from_name(&time.unit).filter(|unit| !(time.counts && *unit == TimeUnit::Sample));
     if (time.counts && stated.is_none()) || columns.sample_time_s.is_some() {
-        return tell(
+        return decided(
             TimeUnit::Sample,
             format!("column {} counts them", table.label(time.column)),
         );
     }
     if let Some(unit) = stated {
-        return tell(unit, "the column says so".to_owned());
+        return decided(unit, "the column says so".to_owned());
     }
     if !is_unstated(&time.unit) {
         let (label, known) = (table.label(time.column), TimeUnit::KNOWN);
@@ -166,7 +166,7 @@ fn unit(
         _ => TimeUnit::Nanosecond,
     };
     let step_shown = to_four_digits(step);
-    tell(
+    decided(
         unit,
         format!(
             "guessed, as steps are {step_shown}; hint: --columns time=s or ms, us, ns, samples says it"
@@ -350,15 +350,15 @@ fn stretches(
             taken_s: sample_time_s,
         });
     }
-    for pair in stretches.windows(2).take(GAPS_TOLD) {
+    for pair in stretches.windows(2).take(GAPS_REPORTED) {
         findings.push(LogFinding::Gap {
             from_s: time_s[pair[0].end - 1],
             to_s: time_s[pair[1].start],
         });
     }
-    if stretches.len() > GAPS_TOLD + 1 {
+    if stretches.len() > GAPS_REPORTED + 1 {
         findings.push(LogFinding::MoreGaps {
-            count: stretches.len() - 1 - GAPS_TOLD,
+            count: stretches.len() - 1 - GAPS_REPORTED,
         });
     }
     Clock {

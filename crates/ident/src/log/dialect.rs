@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn delimiters_and_points_are_told_apart() {
+    fn delimiters_and_points_are_distinguished() {
         for (text, delimiter, point, columns) in [
             ("0\t1\t2\n1\t2\t3\n", b'\t', b'.', 3),
             ("0,1,2\n1,2.5,3\n", b',', b'.', 3),

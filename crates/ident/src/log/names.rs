@@ -500,7 +500,7 @@ mod tests {
     }
 
     #[test]
-    fn units_are_told_from_what_else_names_have_in_brackets_or_at_their_end() {
+    fn units_are_distinguished_from_what_else_names_have_in_brackets_or_at_their_end() {
         for (name, unit) in [
             ("x(1)", ""),
             ("Position (X)", ""),

@@ -104,7 +104,7 @@ pub(super) fn fit(
         return Err(LogError::refused(refusals));
     }
     for axis in &mut moving {
-        tell(axis, clock, findings);
+        report(axis, clock, findings);
         axis.verdict = verdict(axis, clock);
     }
     Ok([moving, still])
@@ -309,7 +309,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Reports the findings about an accepted axis.
-fn tell(axis: &LogAxis, clock: &Clock, findings: &mut Vec<LogFinding>) {
+fn report(axis: &LogAxis, clock: &Clock, findings: &mut Vec<LogFinding>) {
     let name = || axis.name.clone();
     let following_um = 1e3 * following_mm(axis);
     let delay_s = delay_samples(&axis.command_mm, &axis.actual_mm) * clock.sample_time_s;

@@ -81,19 +81,19 @@ fn problems(text: &str) -> Vec<Problem> {
     }
 }
 
-fn told(text: &str) -> Vec<String> {
-    let told = |problem: &Problem| {
+fn reported(text: &str) -> Vec<String> {
+    let reported = |problem: &Problem| {
         let hint = problem.hint.as_deref().unwrap_or("no hint");
         format!("{}:{}: {problem} / {hint}", problem.line, problem.column)
     };
-    problems(text).iter().map(told).collect()
+    problems(text).iter().map(reported).collect()
 }
 
 /// Messages about a contour model of two axes once `from` is replaced by `to`.
-fn told_after(from: &str, to: &str) -> Vec<String> {
+fn reported_after(from: &str, to: &str) -> Vec<String> {
     let text = contour::<2>().text();
     assert!(text.contains(from), "the file has no '{from}'");
-    told(&text.replacen(from, to, 1))
+    reported(&text.replacen(from, to, 1))
 }
 
 #[test]
@@ -182,21 +182,21 @@ fn the_date_is_no_part_of_the_content_and_everything_else_is() {
         (weight.as_str(), "0.25"),
         ("training_data = \"", "training_data = \"0"),
     ] {
-        let told = told_after(from, to);
-        assert_eq!(told.len(), 1, "{told:?}");
+        let reported = reported_after(from, to);
+        assert_eq!(reported.len(), 1, "{reported:?}");
         assert!(
-            told[0].starts_with("8:12: the checksum does not fit: the file was changed"),
-            "{told:?}"
+            reported[0].starts_with("8:12: the checksum does not fit: the file was changed"),
+            "{reported:?}"
         );
         assert!(
-            told[0].contains("write it anew with 'feedwright identify'"),
-            "{told:?}"
+            reported[0].contains("write it anew with 'feedwright identify'"),
+            "{reported:?}"
         );
     }
 }
 
 #[test]
-fn every_fault_is_told_at_its_place_with_a_remedy() {
+fn every_fault_is_reported_at_its_place_with_a_remedy() {
     let text = contour::<2>()
         .text()
         .replace("axes = 2", "axis = 2")
@@ -204,7 +204,7 @@ fn every_fault_is_told_at_its_place_with_a_remedy() {
         .replace("samples = 12345", "samples = 1.5")
         .replace("[fit]", "more = 3\n[fit]");
     assert_eq!(
-        told(&text),
+        reported(&text),
         [
             "1:1: axes is missing / is 'axis' meant to be it?",
             "4:1: unknown key 'axis' in the file / did you mean 'axes'?",
@@ -235,20 +235,20 @@ fn numbers_of_an_array_have_places_and_bounds() {
         ("'1.5'", "is a string, not a number / no hint"),
         ("[1.0]", "is an array, not a number / no hint"),
     ] {
-        let told = told_after(&weight, to);
-        assert_eq!(told.len(), 1, "{told:?}");
+        let reported = reported_after(&weight, to);
+        assert_eq!(reported.len(), 1, "{reported:?}");
         assert!(
-            told[0].contains(&format!("hidden, number 2 {what}")),
-            "{told:?}"
+            reported[0].contains(&format!("hidden, number 2 {what}")),
+            "{reported:?}"
         );
-        assert!(told[0].starts_with("20:"), "{told:?}");
+        assert!(reported[0].starts_with("20:"), "{reported:?}");
     }
     assert_eq!(
-        told_after(&weight, "1,5").len(),
+        reported_after(&weight, "1,5").len(),
         1,
         "a decimal comma makes two numbers of one"
     );
-    let short = told_after(&format!(" {weight},"), "");
+    let short = reported_after(&format!(" {weight},"), "");
     assert_eq!(short.len(), 1);
     assert!(
         short[0]
@@ -257,34 +257,36 @@ fn numbers_of_an_array_have_places_and_bounds() {
     );
     let mut wild = contour::<2>();
     wild.weights.hidden.fill(f64::NAN);
-    let told = told(&wild.text().replace("NaN", "nan"));
-    assert_eq!(told.len(), 3, "{told:?}");
+    let reported = reported(&wild.text().replace("NaN", "nan"));
+    assert_eq!(reported.len(), 3, "{reported:?}");
     assert!(
-        told[2].contains("117 more of hidden are as wrong"),
-        "{told:?}"
+        reported[2].contains("117 more of hidden are as wrong"),
+        "{reported:?}"
     );
 }
 
 #[test]
 fn kinds_have_their_own_weights() {
-    let told = told_after("kind = \"contour\"", "kind = \"axes\"");
+    let reported = reported_after("kind = \"contour\"", "kind = \"axes\"");
     assert!(
-        told.iter()
-            .any(|told| told.contains("unknown key 'hidden' in [weights]")),
-        "{told:?}"
+        reported
+            .iter()
+            .any(|reported| reported.contains("unknown key 'hidden' in [weights]")),
+        "{reported:?}"
     );
-    let told = told_after("kind = \"contour\"", "kind = \"contours\"");
+    let reported = reported_after("kind = \"contour\"", "kind = \"contours\"");
     assert_eq!(
-        told,
+        reported,
         [
             "3:8: no identifier is of kind 'contours'; there are contour, axes / did you mean 'contour'?"
         ]
     );
-    let told = told_after("axes = 2", "axes = 3");
+    let reported = reported_after("axes = 2", "axes = 3");
     assert!(
-        told.len() == 2
-            && told[0].contains("hidden has 120 numbers; a contour identifier of 3 axes has 180"),
-        "{told:?}"
+        reported.len() == 2
+            && reported[0]
+                .contains("hidden has 120 numbers; a contour identifier of 3 axes has 180"),
+        "{reported:?}"
     );
 }
 
@@ -300,7 +302,7 @@ fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
     for number in Parameters::NUMBERS {
         let (name, was) = (number.name, array(number.name));
         let after = |to: &str| {
-            told(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1))
+            reported(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1))
         };
         let beyond = after(&format!(
             "[{:?}, {:?}]",
@@ -315,18 +317,18 @@ fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
         let said = format!("{name} has 1 numbers; an axes identifier of 2 axes has 2");
         assert!(short.len() == 1 && short[0].contains(&said), "{short:?}");
     }
-    let told = told(&text.replacen("mechanics_s = 0.0001", "mechanics_s = 0", 1));
+    let reported = reported(&text.replacen("mechanics_s = 0.0001", "mechanics_s = 0", 1));
     assert!(
-        told.len() == 1
-            && told[0].contains("mechanics_s is 0 s; it must lie between 1e-7 and 0.1 s"),
-        "{told:?}"
+        reported.len() == 1
+            && reported[0].contains("mechanics_s is 0 s; it must lie between 1e-7 and 0.1 s"),
+        "{reported:?}"
     );
 }
 
 /// Messages about a model with the checksum that belongs to it.
-fn told_of(mut model: Model) -> Vec<String> {
+fn reported_of(mut model: Model) -> Vec<String> {
     model.about.checksum = model.checksum();
-    told(&model.text())
+    reported(&model.text())
 }
 
 #[test]
@@ -364,17 +366,20 @@ fn axes_that_cannot_be_computed_with_are_refused() {
             "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad",
         ),
     ] {
-        let told = told_of(model);
-        assert!(told.len() == 1 && told[0].contains(said), "{told:?}");
+        let reported = reported_of(model);
+        assert!(
+            reported.len() == 1 && reported[0].contains(said),
+            "{reported:?}"
+        );
     }
 }
 
 /// Earlier versions wrote servo identifiers, with more keys.
 #[test]
 fn a_servo_identifier_is_refused_by_its_kind_alone() {
-    let told = told_after("kind = \"contour\"", "kind = \"servo\"\nlinear = [0.5]");
+    let reported = reported_after("kind = \"contour\"", "kind = \"servo\"\nlinear = [0.5]");
     assert_eq!(
-        told,
+        reported,
         [
             "3:8: the model is a servo identifier, a kind that no controller uses any more / identify the machine again: \
           'feedwright identify' writes a model for lqg-identified"
@@ -383,35 +388,35 @@ fn a_servo_identifier_is_refused_by_its_kind_alone() {
 }
 
 #[test]
-fn another_format_is_told_of_by_who_reads_it_and_by_nothing_else() {
-    let told = told_after("format = 1", "format = 2\nkey_of_the_future = true");
+fn another_format_is_reported_by_its_reader_and_by_nothing_else() {
+    let reported = reported_after("format = 1", "format = 2\nkey_of_the_future = true");
     let version = version();
     assert_eq!(
-        told,
+        reported,
         [format!(
             "1:10: the model is of format 2; {version} reads format 1 / {version} wrote it and reads it; or write it anew with this \
              version's 'feedwright identify'"
         )]
     );
-    let told = told_after("format = 1", "format = 'one'");
+    let reported = reported_after("format = 1", "format = 'one'");
     assert!(
-        told[0].starts_with("1:10: format has to be a number, but is a string"),
-        "{told:?}"
+        reported[0].starts_with("1:10: format has to be a number, but is a string"),
+        "{reported:?}"
     );
 }
 
 #[test]
-fn other_files_are_told_apart() {
+fn other_files_are_distinguished() {
     let (_, machine) = feedwright_sim::BUILT_IN_MACHINES[0];
-    let machine = told(machine);
+    let machine = reported(machine);
     assert_eq!(
         machine,
         [
             "1:1: format is missing: this is no model file / it looks like a machine file: give that to --machine"
         ]
     );
-    assert!(told("")[0].contains("'feedwright identify' writes model files"));
-    let program = told(&"G0 X1 Y2\n".repeat(100));
+    assert!(reported("")[0].contains("'feedwright identify' writes model files"));
+    let program = reported(&"G0 X1 Y2\n".repeat(100));
     assert!(
         program.len() == 5
             && program[4].ends_with("95 more places are not TOML: was another file meant?"),
@@ -424,9 +429,9 @@ fn other_files_are_told_apart() {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_is_told_of_as_a_model_file() {
+fn a_file_that_cannot_be_read_is_reported_as_a_model_file() {
     let folder = tempfile::tempdir().unwrap();
-    let tell = |name: &str, content: Option<&[u8]>| {
+    let reported = |name: &str, content: Option<&[u8]>| {
         let path = folder.path().join(name);
         content
             .into_iter()
@@ -440,17 +445,17 @@ fn a_file_that_cannot_be_read_is_told_of_as_a_model_file() {
                 .unwrap_or_default(),
         )
     };
-    let (message, hint) = tell("none.model.toml", None);
+    let (message, hint) = reported("none.model.toml", None);
     assert!(
         message.starts_with("cannot read model file") && hint.contains("identify --out"),
         "{message} {hint}"
     );
-    let (message, hint) = tell("huge", Some(&vec![b' '; 2 << 20]));
+    let (message, hint) = reported("huge", Some(&vec![b' '; 2 << 20]));
     assert!(
         message.ends_with("this is no model file") && hint.contains("pages of TOML"),
         "{message} {hint}"
     );
-    let (message, hint) = tell("block", Some(&contour::<2>().block(None)));
+    let (message, hint) = reported("block", Some(&contour::<2>().block(None)));
     assert!(
         message.contains("is not text") && hint.contains("a model file is TOML text"),
         "{message} {hint}"
@@ -499,7 +504,7 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
     ] {
         assert!(
             document.contains(&format!("{line} {text}")),
-            "docs/model-file.md does not tell the {line}"
+            "docs/model-file.md does not describe the {line}"
         );
     }
 }

@@ -59,7 +59,7 @@ pub(crate) fn read(content: &[u8], columns: &str) -> Result<Log, LogError> {
 }
 
 /// All findings, a line each.
-pub(crate) fn told(log: &Log) -> String {
+pub(crate) fn reported(log: &Log) -> String {
     log.findings
         .iter()
         .map(|finding| format!("{finding}\n"))

@@ -178,7 +178,7 @@ impl<'p> Plan<'p> {
 
     /// Reports everything that the plan hands out to `sink`.
     #[must_use]
-    pub fn told_to(self, sink: Option<&'p dyn PlanSink>) -> Self {
+    pub fn reporting_to(self, sink: Option<&'p dyn PlanSink>) -> Self {
         Self { sink, ..self }
     }
 

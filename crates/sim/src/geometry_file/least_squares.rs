@@ -173,7 +173,7 @@ mod tests {
 
     /// F at the upper 5, 1 and 0.1 percent, as tables of statistics print it to three digits.
     #[test]
-    fn the_f_distribution_is_that_of_tables() {
+    fn the_f_distribution_agrees_with_tables() {
         for (quotient, over, under, part) in [
             (4.96, 1.0, 10.0, 0.05),
             (10.04, 1.0, 10.0, 0.01),

@@ -201,7 +201,7 @@ fn the_geometry_that_was_found_passes() {
 fn every_wrong_sign_is_caught_and_named() {
     for axis in 0..3 {
         let name = AXIS_NAMES[axis];
-        let told = [
+        let reported = [
             (
                 refused(|file| file.axes[axis].scale_um_m *= -1.0),
                 "scale_um_m",
@@ -219,16 +219,16 @@ fn every_wrong_sign_is_caught_and_named() {
                 "backlash_um",
             ),
         ];
-        for (told, key) in told {
+        for (reported, key) in reported {
             assert!(
-                told.contains(&format!(
+                reported.contains(&format!(
                     "with the other sign of {key} of axis.{name} it fits"
                 )),
-                "{told}"
+                "{reported}"
             );
         }
     }
-    for (told, key) in [
+    for (reported, key) in [
         (
             refused(|file| file.squareness.squareness_xy_urad *= -1.0),
             "xy",
@@ -243,10 +243,10 @@ fn every_wrong_sign_is_caught_and_named() {
         ),
     ] {
         assert!(
-            told.contains(&format!(
+            reported.contains(&format!(
                 "with the other sign of squareness_{key}_urad it fits"
             )),
-            "{told}"
+            "{reported}"
         );
     }
 }
@@ -254,18 +254,18 @@ fn every_wrong_sign_is_caught_and_named() {
 #[test]
 fn exchanged_axes_and_another_lead_are_caught() {
     for [a, b] in [[0, 1], [0, 2], [1, 2]] {
-        let told = refused(|file| file.axes.swap(a, b));
+        let reported = refused(|file| file.axes.swap(a, b));
         let said = format!(
             "with axis.{} and axis.{} exchanged it fits",
             AXIS_NAMES[a], AXIS_NAMES[b]
         );
-        assert!(told.contains(&said), "{told}");
+        assert!(reported.contains(&said), "{reported}");
     }
     for lead_mm in [5.0, 9.5, 12.0, 20.0] {
-        let told = refused(|file| file.axes[1].lead_mm_per_rev = lead_mm);
+        let reported = refused(|file| file.axes[1].lead_mm_per_rev = lead_mm);
         assert!(
-            told.contains("the lead or the measurement was changed"),
-            "{told}"
+            reported.contains("the lead or the measurement was changed"),
+            "{reported}"
         );
     }
     refused(|file| file.axes[0].table = vec![[0.0, 3.0, 3.0], [100.0, -3.0, 3.0]]);
@@ -312,14 +312,14 @@ fn a_geometry_of_noise_is_refused() {
 }
 
 #[test]
-fn faults_are_told_at_their_places() {
+fn faults_are_reported_at_their_places() {
     let text = "format = 1\nsource = \"hand\"\n[axis.x]\nscale_um_m = 1e6\npitch_error_um = 2\ntable = [[5, 1, 1], [0, 1, 1]]\n\
                 straightness_x = [[0, 1]]\n[axis.w]\n[measured]\nunknowns = 1\n[measured.set.a]\nkind = \"bars\"\naxes = \"xy\"\n\
                 noise_um = 1\nleft_um = 1\nrows = [[1, 2]]\n";
     let Err(FileError::Invalid { problems, .. }) = GeometryFile::parse("g.toml", text) else {
         panic!("no faults")
     };
-    let told: Vec<String> = problems
+    let reported: Vec<String> = problems
         .iter()
         .map(|problem| format!("{}: {problem}", problem.line))
         .collect();
@@ -333,8 +333,8 @@ fn faults_are_told_at_their_places() {
         "rows, row 1 has to be 3 numbers in brackets",
     ] {
         assert!(
-            told.iter().any(|told| told.contains(said)),
-            "no '{said}' in {told:#?}"
+            reported.iter().any(|reported| reported.contains(said)),
+            "no '{said}' in {reported:#?}"
         );
     }
 }

@@ -56,15 +56,15 @@ impl Known {
     #[must_use]
     pub fn misjudged(&self, inertia: f64, friction: f64) -> Self {
         let axis = |axis: &KnownAxis| {
-            let mut believed = *axis;
-            believed.nominal.inertia_kg_m2 *= inertia;
-            believed.nominal.viscous_friction_nm_s *= friction;
-            believed.nominal.coulomb_friction_nm *= friction;
-            believed.nominal.coulomb_asymmetry_nm *= friction;
-            believed.nominal.stribeck_nm *= friction;
-            let more_nm = believed.nominal.coulomb_friction_nm - axis.nominal.coulomb_friction_nm;
-            believed.spare_torque_nm = (axis.spare_torque_nm - more_nm).max(0.0);
-            believed
+            let mut assumed = *axis;
+            assumed.nominal.inertia_kg_m2 *= inertia;
+            assumed.nominal.viscous_friction_nm_s *= friction;
+            assumed.nominal.coulomb_friction_nm *= friction;
+            assumed.nominal.coulomb_asymmetry_nm *= friction;
+            assumed.nominal.stribeck_nm *= friction;
+            let more_nm = assumed.nominal.coulomb_friction_nm - axis.nominal.coulomb_friction_nm;
+            assumed.spare_torque_nm = (axis.spare_torque_nm - more_nm).max(0.0);
+            assumed
         };
         self.with_axes(|_, known| axis(known))
     }
@@ -148,9 +148,9 @@ mod tests {
     #[test]
     fn what_is_misjudged_is_inertia_and_friction_and_no_setting() {
         let known = Machine::load("tnv40".as_ref()).unwrap().known();
-        let believed = known.misjudged(0.8, 1.2);
+        let assumed = known.misjudged(0.8, 1.2);
         for i in 0..2 {
-            let (was, is) = (known.axis(i), believed.axis(i));
+            let (was, is) = (known.axis(i), assumed.axis(i));
             assert_eq!(is.nominal.inertia_kg_m2, 0.8 * was.nominal.inertia_kg_m2);
             assert_eq!(
                 is.nominal.viscous_friction_nm_s,

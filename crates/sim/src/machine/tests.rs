@@ -473,7 +473,7 @@ fn geometry_and_seed_are_read_upon_a_base_and_belong_to_the_fingerprint() {
 }
 
 #[test]
-fn values_of_an_axis_that_do_not_go_together_are_told() {
+fn values_of_an_axis_that_do_not_go_together_are_reported() {
     for (line, says) in [
         (
             "interpolation_error_um = 0.5",

@@ -17,7 +17,7 @@ use super::sweep::SweepArgs;
 #[command(after_long_help = "\
 Our controller is lqg-identified, or the first one where that is not named. Columns: median, 90 % and largest of the RMS error over the \
 uncorrected one; worse: cuts with a worse error than uncorrected; out: cuts that end without the controller in the loop; later: median of \
-the error from the third second of motion on, over that of the same controller without a difference.
+the error from the third second of motion on, over the error of the same controller without a difference.
 
 Examples:
   feedwright-lab mismatch parts --machine workshop --drawn 4 --seed 7

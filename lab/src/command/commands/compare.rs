@@ -22,7 +22,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
             .build_global()
             .into_diagnostic()?;
     }
-    tell_searches(args, &options);
+    report_searches(args, &options);
     let kept = Kept::open(args.results.as_deref(), &options.fingerprint())?;
     if let Some(record) = &args.record {
         return record_searches(record, &options, kept, console);
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
 }
 
 /// A search takes a minute and more for each controller and machine.
-fn tell_searches(args: &CompareArgs, options: &ComparisonOptions) {
+fn report_searches(args: &CompareArgs, options: &ComparisonOptions) {
     const NAMED: usize = 4;
     let searched = options.to_search();
     if args.tuning() != TuningSource::Recorded || searched.is_empty() {

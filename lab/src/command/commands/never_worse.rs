@@ -119,7 +119,7 @@ pub(super) fn read(
     let refused = files.len() - programs.len();
     if refused > 0 {
         eprintln!(
-            "left out, with mistakes or without motion: {refused} of {} (feedwright check tells why)",
+            "left out, with mistakes or without motion: {refused} of {} (feedwright check says why)",
             files.len()
         );
     }

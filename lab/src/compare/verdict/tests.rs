@@ -59,7 +59,7 @@ fn options() -> ComparisonOptions {
 }
 
 /// Returns, for each verdict, its peer, the value in thousandths, and whether the claim holds.
-fn told(rows: &[ComparisonRow]) -> Vec<(String, f64, bool)> {
+fn reported(rows: &[ComparisonRow]) -> Vec<(String, f64, bool)> {
     let verdicts = verdicts(rows, &options()).into_iter();
     verdicts
         .map(|v| (v.against, (v.value * 1e3).round(), v.holds))
@@ -88,21 +88,21 @@ fn without_corners_four_claims_each_with_its_limit() {
         of("cross-coupled", 110.0, true),
         of(NOISELESS_LIMIT, 1100.0, true),
     ];
-    assert_eq!(told(&rows([0.11, 1.5])), good);
+    assert_eq!(reported(&rows([0.11, 1.5])), good);
     let bad = [
         of(BASELINE, 50.0, false),
         of(BASELINE, 150.0, false),
         of("cross-coupled", 500.0, false),
         of(NOISELESS_LIMIT, 5000.0, false),
     ];
-    assert_eq!(told(&rows([0.5, 3.0])), bad);
+    assert_eq!(reported(&rows([0.5, 3.0])), bad);
 }
 
 #[test]
 fn the_square_is_held_against_micrometres() {
     let rows = |ours: [f64; 2]| {
         let open = row("square", TNV40, BASELINE, [10.0, 20.0]);
-        told(&[open, row("square", TNV40, BEST, ours)])
+        reported(&[open, row("square", TNV40, BEST, ours)])
     };
     assert_eq!(
         rows([0.02, 0.6]),
@@ -125,7 +125,10 @@ fn elsewhere_the_unseen_and_the_identified_row_are_held_against_the_same_peer() 
         row("circle", "rough", BEST, [0.8, 2.0]),
         row("circle", "rough", "lqg-identified+unseen", [2.4, 5.0]),
     ];
-    assert_eq!(told(&rows), [of(peer, 600.0, false), of(peer, 200.0, true)]);
+    assert_eq!(
+        reported(&rows),
+        [of(peer, 600.0, false), of(peer, 200.0, true)]
+    );
 }
 
 #[test]
@@ -148,9 +151,13 @@ fn under_noise_the_best_peer_has_the_exact_model_and_geometry_does_not_count() {
         of(LIMIT, 3000.0, false),
     ];
     let twice: Vec<_> = circle.iter().chain(&circle).cloned().collect();
-    assert_eq!(told(&rows), twice, "the circle, and all work that there is");
+    assert_eq!(
+        reported(&rows),
+        twice,
+        "the circle, and all work that there is"
+    );
     rows.retain(|row| row.controller != LIMIT);
-    assert_eq!(told(&rows).len(), 4, "no verdict without the limit");
+    assert_eq!(reported(&rows).len(), 4, "no verdict without the limit");
 }
 
 #[test]
@@ -195,10 +202,10 @@ fn nothing_holds_that_took_longer_or_did_not_end() {
         row("circle", TNV40, BEST, [0.1, 1.0]),
     ];
     let both = |holds: bool| [of(BASELINE, 10.0, holds), of(BASELINE, 50.0, holds)];
-    assert_eq!(told(&rows), both(true));
+    assert_eq!(reported(&rows), both(true));
     rows[1].time_ratio = 1.001;
-    assert_eq!(told(&rows), both(false));
+    assert_eq!(reported(&rows), both(false));
     rows[1].time_ratio = 1.0;
     rows[1].completed = false;
-    assert_eq!(told(&rows), both(false));
+    assert_eq!(reported(&rows), both(false));
 }

@@ -24,7 +24,7 @@
 //! constraints", Automatica 30(3); the bound by the rate, and the transition from one regulator to
 //! the next, are our own.
 
-use crate::supervisor::validity::Trusted;
+use crate::supervisor::validity::ModelWeights;
 
 use super::command_weight::REGULATED;
 use super::linear;
@@ -36,7 +36,7 @@ const RELIED_ON: f64 = 0.5;
 const LEAST_LEFT: f64 = 0.1;
 /// Number of weights, and the ratio of the time constant of one to the time constant of the one
 /// before.
-const PRICES: usize = 12;
+const WEIGHTS: usize = 12;
 const RATIO: f64 = 2.0;
 /// Time constants in which an error is closed. On `router`, 1 leaves 50 % more error on the square,
 /// and 10 triggers the supervisor on the star; a double integrator whose input takes 20 ms from
@@ -46,7 +46,7 @@ const CLOSED: f64 = 3.0;
 /// model that omits a delay of the drives of 2 ms, the square with jumps at its corners is cut with
 /// 3.2 um RMS of 1.7 with 1 as the second value, with 0.5 with 2; the circle with 1.1 of 9 and with
 /// 1.8, and with 3.1 with 3.
-const UNTRUSTED: f64 = 4.0;
+const WITHOUT_MODEL: f64 = 4.0;
 const WITHOUT_LOADS: f64 = 2.0;
 
 /// Returns the usable torque in addition to the torque of the reference, N m.
@@ -70,7 +70,7 @@ pub(super) struct Room {
 pub(super) struct WeightedGains {
     /// sqrt(p), s.
     time_s: f64,
-    gains: [[f64; REGULATED]; PRICES],
+    gains: [[f64; REGULATED]; WEIGHTS],
 }
 
 impl WeightedGains {
@@ -98,12 +98,18 @@ impl WeightedGains {
     }
 
     /// Returns the reduction of the reference speed for an axis with the deviation `off`, rad/s,
-    /// with the weights `trusted` of the model.
-    pub(super) fn asked_rad_s(&self, off: &[f64; REGULATED], room: Room, trusted: Trusted) -> f64 {
+    /// with the weights `model_weights` of the model.
+    pub(super) fn asked_rad_s(
+        &self,
+        off: &[f64; REGULATED],
+        room: Room,
+        model_weights: ModelWeights,
+    ) -> f64 {
         let [error, loads] = linear::error_and_loads(off);
-        let loads_rad_s = trusted.loads * inner(&self.near(), &loads);
+        let loads_rad_s = model_weights.loads * inner(&self.near(), &loads);
         // The cast saturates to zero where the float is NaN.
-        let lowest = UNTRUSTED * (1.0 - trusted.near) + WITHOUT_LOADS * (1.0 - trusted.loads);
+        let lowest = WITHOUT_MODEL * (1.0 - model_weights.near)
+            + WITHOUT_LOADS * (1.0 - model_weights.loads);
         let below = lowest as usize;
         let part = lowest - below as f64;
         let asked_rad_s = |from: usize| loads_rad_s + self.closing_rad_s(&error, room, from);
@@ -171,11 +177,12 @@ mod tests {
             most_rad_s: 100.0,
             change_rad_s2: 5000.0,
         };
-        let asked = |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room, Trusted::FULLY);
+        let asked =
+            |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room, ModelWeights::FULLY);
         assert_eq!(
             asked(1e-6),
             1.0,
-            "near the reference the lowest price counts in full"
+            "near the reference the lowest weight counts in full"
         );
         let mut before_rad_s = 0.0;
         for n in 1..20_000 {
@@ -206,7 +213,7 @@ mod tests {
                     most_rad_s: 0.1,
                     change_rad_s2: f64::INFINITY
                 },
-                Trusted::FULLY
+                ModelWeights::FULLY
             ),
             30.1
         );
@@ -242,8 +249,9 @@ mod tests {
             change_rad_s2: 2e4,
         };
         for from_rad in [1e-4, 1e-3, 0.01, 0.1, 1.0] {
-            let priced = |x: f64, w: f64| gains.asked_rad_s(&off(x, w), room, Trusted::FULLY);
-            let [overshoot_rad, rest_rad] = overshoot_and_rest_rad(&priced, bounds, from_rad);
+            let weighted =
+                |x: f64, w: f64| gains.asked_rad_s(&off(x, w), room, ModelWeights::FULLY);
+            let [overshoot_rad, rest_rad] = overshoot_and_rest_rad(&weighted, bounds, from_rad);
             assert!(
                 overshoot_rad < 0.2 * from_rad && rest_rad < 1e-3 * from_rad,
                 "{from_rad}: {overshoot_rad} {rest_rad}"

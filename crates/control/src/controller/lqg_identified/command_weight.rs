@@ -141,12 +141,12 @@ pub(super) fn gains<'a>(
     axis_model: &'a CommandModel,
 ) -> impl Fn([f64; 2]) -> [f64; REGULATED] + 'a {
     let (states, input, _) = axis.sampled();
-    move |[p_s2, q]| priced(&states, &input, &axis.cost(p_s2), axis_model, q)
+    move |[p_s2, q]| weighted(&states, &input, &axis.cost(p_s2), axis_model, q)
 }
 
 /// Returns the gains of an axis with these states, this input and this cost of a servo period, and
 /// with the weight q.
-fn priced(
+fn weighted(
     states: &StateMatrix<STATES>,
     input: &[f64; STATES],
     cost: &PeriodCost<STATES>,

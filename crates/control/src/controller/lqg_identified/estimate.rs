@@ -51,7 +51,7 @@ pub(super) struct FilterModel {
     /// Innovation below which nothing is learned, and innovation above which only a part is used,
     /// rad.
     least_rad: f64,
-    believed_rad: f64,
+    bound_rad: f64,
     /// Servo periods from a command until the position loop has it.
     pub(super) command_periods: usize,
     /// Mechanics periods from a measurement until it is available, and from a reference until it
@@ -203,7 +203,7 @@ impl FilterModel {
             gains,
             measured_rad2,
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
-            believed_rad: outliers::believed_rad(&axis_model, measured_rad2),
+            bound_rad: outliers::bound_rad(&axis_model, measured_rad2),
             command_periods: parameters.command_periods(periods.servo_s),
             late: late(&axis_model),
             axis_model,
@@ -261,13 +261,13 @@ impl FilterModel {
     }
 
     /// Returns the mean square error of a free run by these innovations, if they are white, rad^2.
-    pub(super) fn by_noise_rad2(&self, told: &Innovation, learnt: &Learnt) -> f64 {
+    pub(super) fn by_noise_rad2(&self, innovation: &Innovation, learnt: &Learnt) -> f64 {
         let amplified = self
             .amplified
             .get(learnt.whiteness.level())
             .copied()
             .unwrap_or(1.0);
-        told.missed_rad * told.missed_rad * amplified
+        innovation.missed_rad * innovation.missed_rad * amplified
     }
 
     /// Returns the angle that the encoder shows, rad.
@@ -297,11 +297,11 @@ impl FilterModel {
             (estimate.masses.motor.speed_rad_s - before_rad_s) * self.axis_model.periods.servo_s;
         let shown_rad = self.shown_rad(estimate);
         let missed_rad = measured_rad - shown_rad;
-        let (believed_rad, servo_s) = (self.believed_rad, self.axis_model.periods.servo_s);
+        let (bound_rad, servo_s) = (self.bound_rad, self.axis_model.periods.servo_s);
         let repeats = learnt.repeats(measured_rad);
         let taken_rad = learnt
             .outliers
-            .bounded_rad(repeats, missed_rad, believed_rad, servo_s);
+            .bounded_rad(repeats, missed_rad, bound_rad, servo_s);
         learnt.whiteness.take_in(repeats, taken_rad, self.least_rad);
         let gains = self.gains.at(learnt.whiteness.power());
         estimate.correct(gains.map(|gain| gain * taken_rad));
@@ -311,12 +311,12 @@ impl FilterModel {
         // The supervisor detects a frozen encoder: its measurement is no evidence on the
         // predictions.
         let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
-        let believed = if missed_rad == 0.0 {
+        let used = if missed_rad == 0.0 {
             1.0
         } else {
             taken_rad / missed_rad
         };
-        let gains = gains.map(|gain| believed * gain);
+        let gains = gains.map(|gain| used * gain);
         Innovation {
             missed_rad,
             measured_rad: shown_rad + taken_rad,

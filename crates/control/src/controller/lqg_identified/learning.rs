@@ -80,7 +80,7 @@ const LEFT_S: f64 = 0.25;
 /// Error of the first order, as a part of the effect of the differences.
 const FIRST_ORDER: f64 = 0.3;
 /// Standard deviations up to which a residual counts.
-const BELIEVED: f64 = 3.0;
+const PLAUSIBLE: f64 = 3.0;
 /// Speed below which an axis shows its friction at rest, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
 
@@ -226,7 +226,7 @@ impl Learner {
     }
 
     /// Restores the initial uncertainty of the differences after a change of the machine.
-    pub(super) fn doubt(&self, learning: &mut Learning) {
+    pub(super) fn restore_uncertainty(&self, learning: &mut Learning) {
         learning.covariance = self.begin().covariance;
     }
 
@@ -255,19 +255,19 @@ impl Learner {
         learning: &mut Learning,
         model: &FilterModel,
         run: (&Estimate, &Sent),
-        told: &Innovation,
+        innovation: &Innovation,
     ) {
-        let speed_rad_s = self.predict(learning, model, run, told);
+        let speed_rad_s = self.predict(learning, model, run, innovation);
         let slowest_rad_s = SLOWEST_MM_S * self.nominal.parameters.rad_per_mm;
         learning.moves = speed_rad_s.abs() > slowest_rad_s;
-        if learning.moves && told.missed_rad.is_finite() {
-            self.learn(learning, told);
+        if learning.moves && innovation.missed_rad.is_finite() {
+            self.learn(learning, innovation);
         }
         for sensitivity in &mut learning.sensitivities {
             let [angle, ..] = *sensitivity;
             sensitivity
                 .iter_mut()
-                .zip(told.gains)
+                .zip(innovation.gains)
                 .for_each(|(state, gain)| *state -= gain * angle);
         }
     }
@@ -279,7 +279,7 @@ impl Learner {
         learning: &mut Learning,
         model: &FilterModel,
         (estimate, sent): (&Estimate, &Sent),
-        told: &Innovation,
+        innovation: &Innovation,
     ) -> f64 {
         let (age, older) = model.acting();
         let mean = |of: &dyn Fn(usize) -> f64| of(age) + older * (of(age + 1) - of(age));
@@ -305,7 +305,7 @@ impl Learner {
             [
                 0.0,
                 0.0,
-                parameters.inertia_kg_m2 * told.pushed_rad
+                parameters.inertia_kg_m2 * innovation.pushed_rad
                     / (self.nominal.periods.servo_s * self.nominal.periods.servo_s),
             ],
             [0.0, 0.0, model.friction_nm(estimate)],
@@ -332,21 +332,21 @@ impl Learner {
     }
 
     /// Does a step of recursive least squares.
-    fn learn(&self, learning: &mut Learning, told: &Innovation) {
+    fn learn(&self, learning: &mut Learning, innovation: &Innovation) {
         let servo_s = self.nominal.periods.servo_s;
         let mut shows: Differences = learning.sensitivities.map(|[angle, ..]| angle);
         if learning.even_s > EVEN_S {
             OF_ACCELERATION.into_iter().for_each(|i| shows[i] = 0.0);
         }
-        let of_nominal_rad = told.missed_rad + dot(&shows, &learning.applied);
+        let of_nominal_rad = innovation.missed_rad + dot(&shows, &learning.applied);
         let left_rad = of_nominal_rad - dot(&shows, &learning.found);
         let spreads: Differences = learning.covariance.map(|row| dot(&row, &shows));
         let second_rad = FIRST_ORDER * of_nominal_rad;
         let noise_rad2 =
-            COLOURED * told.expected_rad2.max(learning.left_rad2) + second_rad * second_rad;
+            COLOURED * innovation.expected_rad2.max(learning.left_rad2) + second_rad * second_rad;
         let variance_rad2 = noise_rad2 + dot(&shows, &spreads);
-        let believed_rad = BELIEVED * libm::sqrt(variance_rad2);
-        let left_rad = bounded(left_rad, -believed_rad, believed_rad);
+        let bound_rad = PLAUSIBLE * libm::sqrt(variance_rad2);
+        let left_rad = bounded(left_rad, -bound_rad, bound_rad);
         if !(variance_rad2 > noise_rad2 && left_rad.is_finite()) {
             return;
         }

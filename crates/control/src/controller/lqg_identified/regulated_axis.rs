@@ -9,7 +9,7 @@ use crate::axis::{AxisModel, AxisState, Parameters};
 use crate::supervisor::load;
 use crate::supervisor::model_choice::ModelChange;
 use crate::supervisor::one_step::{OneStep, run_periods};
-use crate::supervisor::validity::Trusted;
+use crate::supervisor::validity::ModelWeights;
 
 use super::approach::{self, Room, WeightedGains};
 use super::command_weight::{self, CommandHistory, CommandModel, REGULATED};
@@ -199,10 +199,10 @@ impl ModelRun {
             trial,
         } = self;
         tracked.send(model, command_rad);
-        let told = model.correct(&mut tracked.estimate, &tracked.sent, measured_rad, learnt);
-        tracked.measured_rad = told.measured_rad;
+        let innovation = model.correct(&mut tracked.estimate, &tracked.sent, measured_rad, learnt);
+        tracked.measured_rad = innovation.measured_rad;
         trial.go_on(model, &tracked.sent, measured_rad, &tracked.estimate);
-        told
+        innovation
     }
 
     /// Advances by a servo period with a command, by the model alone.
@@ -284,7 +284,7 @@ impl AxisLqg {
     }
 
     /// Takes in that the machine has changed.
-    pub(super) fn doubt(&mut self) {
+    pub(super) fn restore_uncertainty(&mut self) {
         if let (
             Some(learner),
             Some(Running {
@@ -293,7 +293,7 @@ impl AxisLqg {
             }),
         ) = (&self.learner, &mut self.state)
         {
-            learner.doubt(learning);
+            learner.restore_uncertainty(learning);
         }
     }
 
@@ -378,10 +378,14 @@ impl AxisLqg {
         if let (Some(learner), Some(learning)) = (&self.learner, &mut running.learning) {
             learner.along(learning, path_mm * rad_per_mm);
         }
-        let told = running.real.go_on(&self.model, command_rad, measured_rad);
-        running.step = told.step(1.0 / rad_per_mm);
-        running.by_noise_rad2 = self.model.by_noise_rad2(&told, &running.real.learnt);
-        let turned = self.learn(&told, [command_rad, from_rad, measured_rad], is_likely);
+        let innovation = running.real.go_on(&self.model, command_rad, measured_rad);
+        running.step = innovation.step(1.0 / rad_per_mm);
+        running.by_noise_rad2 = self.model.by_noise_rad2(&innovation, &running.real.learnt);
+        let turned = self.learn(
+            &innovation,
+            [command_rad, from_rad, measured_rad],
+            is_likely,
+        );
         let Some(Running {
             real,
             open,
@@ -391,7 +395,7 @@ impl AxisLqg {
         else {
             return false;
         };
-        *missed_rad = told.missed_rad;
+        *missed_rad = innovation.missed_rad;
         if turned && is_alone {
             *open = real.tracked;
         }
@@ -409,7 +413,7 @@ impl AxisLqg {
     /// from now on.
     fn learn(
         &mut self,
-        told: &Innovation,
+        innovation: &Innovation,
         [command_rad, from_rad, measured_rad]: [f64; 3],
         is_likely: bool,
     ) -> bool {
@@ -426,7 +430,7 @@ impl AxisLqg {
             return false;
         };
         let beside_from_rad = beside.tracked.measured_rad;
-        let beside_told = beside.go_on(&self.other, command_rad, measured_rad);
+        let beside_innovation = beside.go_on(&self.other, command_rad, measured_rad);
         let missed_rad = [&*real, &*beside].map(|run| run.trial.missed_rad());
         let followed = learning.is_followed();
         let (run, model) = if followed {
@@ -434,17 +438,17 @@ impl AxisLqg {
         } else {
             (&mut *beside, &mut self.other)
         };
-        let (told, from_rad) = if followed {
-            (told, from_rad)
+        let (innovation, from_rad) = if followed {
+            (innovation, from_rad)
         } else {
-            (&beside_told, beside_from_rad)
+            (&beside_innovation, beside_from_rad)
         };
         learner.sent(learning, run.tracked.commands.arrived(), from_rad);
         learner.take_in(
             learning,
             model,
             (&run.tracked.estimate, &run.tracked.sent),
-            told,
+            innovation,
         );
         if let Some(moved) = learner.apply(learning) {
             model.follow(learner.known(learning));
@@ -581,13 +585,13 @@ impl AxisLqg {
             / (rad_per_mm * rad_per_mm)
     }
 
-    /// Returns the offset of the command in this servo period, with the weights `trusted` of the
-    /// model. `at_mm` is the reference at a time after the position loop has that command. The
-    /// motion without offset replaces it by the part `open`.
+    /// Returns the offset of the command in this servo period, with these weights of the model.
+    /// `at_mm` is the reference at a time after the position loop has that command. The motion
+    /// without offset replaces it by the part `open`.
     pub(super) fn offset_mm(
         &mut self,
         here_mm: f64,
-        trusted: Trusted,
+        model_weights: ModelWeights,
         open: f64,
         at_mm: impl Fn(f64) -> f64,
     ) -> f64 {
@@ -635,7 +639,7 @@ impl AxisLqg {
             .as_ref()
             .map_or([0.0; 2], |running| running.commands.off_rad());
         let off = command_weight::with_commands(&off, commands_off);
-        let asked_rad_s = self.asked_rad_s(reference_nm, &off, trusted);
+        let asked_rad_s = self.asked_rad_s(reference_nm, &off, model_weights);
         let offset_mm = self.solved_mm(&tracked, here_mm, reference_rad_s - asked_rad_s);
         if let Some(Running { commands, .. }) = &mut self.state {
             commands.decide(
@@ -677,7 +681,12 @@ impl AxisLqg {
 
     /// Returns the reduction of the reference speed by the regulator. The reference takes this
     /// torque.
-    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; REGULATED], trusted: Trusted) -> f64 {
+    fn asked_rad_s(
+        &self,
+        reference_nm: f64,
+        off: &[f64; REGULATED],
+        model_weights: ModelWeights,
+    ) -> f64 {
         let Parameters {
             torque_limit_nm,
             kp_1_s,
@@ -691,7 +700,7 @@ impl AxisLqg {
             most_rad_s: by_torque_rad_s.min(of_offset * self.bounds.largest_mm),
             change_rad_s2: of_offset * self.bounds.fastest_mm_s,
         };
-        self.regulator.asked_rad_s(off, room, trusted)
+        self.regulator.asked_rad_s(off, room, model_weights)
     }
 
     /// Returns the deviation of the axis from the reference at the time at which the present

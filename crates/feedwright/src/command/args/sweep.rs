@@ -36,7 +36,7 @@ Examples:
   feedwright sweep JOBS.toml --out results --shard $SLURM_ARRAY_TASK_ID/100
   feedwright merge results --out results.csv
 
-Exit codes: 0 done; 1 a job has mistakes, which its result tells; 2 an error: a result is missing.")]
+Exit codes: 0 done; 1 a job has mistakes, which its result contains; 2 an error: a result is missing.")]
 pub(crate) struct SweepJobsArgs {
     /// List of the jobs.
     #[arg(value_name = "JOBS.toml")]

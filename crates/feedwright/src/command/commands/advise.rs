@@ -8,8 +8,8 @@ use serde_json::json;
 
 use crate::command::args::advise::AdviseArgs;
 use crate::command::console::Console;
-use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
-use crate::command::streams::{check_request, outputs_of, tables, tell_written};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, report_assumed_limits, warn};
+use crate::command::streams::{check_request, outputs_of, report_written, tables};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::{page_units, wrapped};
 use crate::correct::FileAssumption;
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let request = args.request()?;
     check_request(console, &request)?;
     let job = request.advise_job()?;
-    tell_assumed_limits(&job.machine, job.target.stages(&job.machine));
+    report_assumed_limits(&job.machine, job.target.stages(&job.machine));
     let mut files = outputs_of(&request);
     let report = files.start_wanted(args.report.as_deref())?;
     let figure = files.start_wanted(args.figure.as_deref())?;
@@ -147,7 +147,7 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
         .chain(&assumed)
         .try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
     print_stretches(out, advice)?;
-    tell_written(out, files())
+    report_written(out, files())
 }
 
 /// The stretches that hold the smallest part of their feedrate.

@@ -11,7 +11,7 @@ use miette::{Result, miette};
 use crate::command::args::block::BlockArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{tables, tell_written};
+use crate::command::streams::{report_written, tables};
 use crate::command::terminal::wrapped;
 use crate::compensation::GeometryChoice;
 use crate::output::{OutputError, OutputFile, OutputFiles};
@@ -44,8 +44,7 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
         )
     } else {
         if args.machine.is_some() {
-            let hint =
-                "leave --machine out: the geometry is that of the machine itself, or of --geometry";
+            let hint = "leave --machine out: the geometry comes from the machine itself, or from --geometry";
             return Err(miette!(
                 help = hint,
                 "--machine goes with a model file (.model.toml), not with a machine"
@@ -78,20 +77,20 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
-    let told = writeln!(out, "{what}, {axes} axes: {} bytes", bytes.len());
-    let told = told.and_then(|()| writeln!(out, "{}", wrapped(&geometry.told, 2)));
+    let reported = writeln!(out, "{what}, {axes} axes: {} bytes", bytes.len());
+    let reported = reported.and_then(|()| writeln!(out, "{}", wrapped(&geometry.reported, 2)));
     let ringing = if axes == 2 {
         ringing::<2>(&bytes)
     } else {
         ringing::<3>(&bytes)
     };
-    let told = told.and_then(|()| {
+    let reported = reported.and_then(|()| {
         ringing
             .iter()
             .try_for_each(|axis| writeln!(out, "{}", wrapped(&rings(axis), 2)))
     });
     printed(
-        told.and_then(|()| tell_written(&mut *out, [place])),
+        reported.and_then(|()| report_written(&mut *out, [place])),
         ExitCode::SUCCESS,
     )
 }
@@ -121,7 +120,7 @@ fn rings(axis: &str) -> String {
 /// The geometry of a block, and the text that describes it.
 struct BlockGeometry {
     known: Option<KnownGeometry<3>>,
-    told: String,
+    reported: String,
 }
 
 impl BlockGeometry {
@@ -138,7 +137,7 @@ impl BlockGeometry {
         // Lost motion alone is no matter of the component.
         let terms = choice.terms(machine).join(", ");
         let known = known.filter(|_| !terms.is_empty());
-        let told = match (choice, machine) {
+        let reported = match (choice, machine) {
             _ if known.as_ref().is_some_and(|known| known.backlash_mm() != [0.0; 3]) => {
                 format!("geometry: {terms}. Backlash is left out: the component does not compensate it")
             }
@@ -150,6 +149,6 @@ impl BlockGeometry {
             }
             _ => "geometry: none. The machine file states no errors".to_owned(),
         };
-        Ok(Self { known, told })
+        Ok(Self { known, reported })
     }
 }

@@ -15,11 +15,11 @@ const KB: f64 = 1e3;
 pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
     let mut out = std::io::stdout().lock();
     let Some(cache) = user_cache() else {
-        let told = writeln!(
+        let reported = writeln!(
             out,
             "nothing is kept: FEEDWRIGHT_CACHE is empty, or there is no home folder"
         );
-        return printed(told, ExitCode::SUCCESS);
+        return printed(reported, ExitCode::SUCCESS);
     };
     let shown = cache.folder().display();
     let failed = |error: std::io::Error| {
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
     let bytes: u64 = files.iter().map(|file| file.bytes).sum();
     let [kept_kb, most_kb] = [bytes, MOST_BYTES].map(|bytes| bytes as f64 / KB);
     let models = counted(files.len());
-    let mut told = writeln!(
+    let mut reported = writeln!(
         out,
         "{shown}\n{models}, {kept_kb:.0} kB of at most {most_kb:.0} kB"
     );
@@ -53,9 +53,10 @@ pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
         .map(|file| age_days(file.used))
         .reduce(f64::max)
     {
-        told = told.and_then(|()| writeln!(out, "the oldest was used {oldest:.1} days ago"));
+        reported =
+            reported.and_then(|()| writeln!(out, "the oldest was used {oldest:.1} days ago"));
     }
-    printed(told, ExitCode::SUCCESS)
+    printed(reported, ExitCode::SUCCESS)
 }
 
 fn counted(models: usize) -> String {

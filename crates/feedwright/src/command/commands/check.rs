@@ -23,7 +23,7 @@ use crate::command::console::Console;
 use crate::command::files_to_check::FilesToCheck;
 use crate::command::findings::{Finding, sarif};
 use crate::command::folded::folded;
-use crate::command::message::{ERROR, MISTAKES, printed, tell, warn};
+use crate::command::message::{ERROR, MISTAKES, printed, show, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::check_inputs;
 use crate::results_format::{stamped, write_json};
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
         crate::command::message::remark(remark);
     }
     for fault in &found.faults {
-        tell(&miette!("{fault}"));
+        show(&miette!("{fault}"));
         output.worst = FileOutcome::Unreadable;
     }
     let result = print(&found.files, &settings, &bar, &mut output);
@@ -134,7 +134,7 @@ fn tool_table(args: &CheckArgs, report: Report) -> Result<ExitCode> {
     };
     let mut out = io::stdout().lock();
     let result = output
-        .tell(&mut out, table, checked)
+        .show(&mut out, table, checked)
         .and_then(|()| output.end(&mut out));
     printed(result, ExitCode::from(ERROR))
 }
@@ -181,7 +181,7 @@ fn print_in_order(
         early.insert(number, checked);
         while let Some(checked) = early.remove(&next) {
             faulty += usize::from(checked.outcome != FileOutcome::Fine);
-            bar.aside(|| output.tell(&mut out, &files[next], checked))?;
+            bar.aside(|| output.show(&mut out, &files[next], checked))?;
             bar.advance(1);
             next += 1;
         }
@@ -208,7 +208,7 @@ impl CheckOutput {
     }
 
     /// Prints what was found in a file, or keeps it for the end.
-    fn tell(&mut self, out: &mut impl Write, file: &Path, checked: CheckedFile) -> io::Result<()> {
+    fn show(&mut self, out: &mut impl Write, file: &Path, checked: CheckedFile) -> io::Result<()> {
         self.worst = self.worst.max(checked.outcome);
         match self.format {
             Format::Text => {
@@ -216,7 +216,7 @@ impl CheckOutput {
                     if checked.line.is_some() {
                         warn(report);
                     } else {
-                        tell(&report);
+                        show(&report);
                     }
                 }
                 checked.line.iter().try_for_each(|line| {

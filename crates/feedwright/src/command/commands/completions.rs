@@ -9,7 +9,7 @@ use crate::command::args::Cli;
 use crate::command::args::completions::CompletionsArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{tables, tell_written};
+use crate::command::streams::{report_written, tables};
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &CompletionsArgs, console: &Console) -> Result<ExitCode> {
@@ -20,5 +20,5 @@ pub(crate) fn run(args: &CompletionsArgs, console: &Console) -> Result<ExitCode>
         .map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let out = Some(args.out.as_path());
-    printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
+    printed(report_written(&mut tables([out]), [out]), ExitCode::SUCCESS)
 }

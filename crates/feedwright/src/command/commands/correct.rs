@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
 use crate::command::controls::print_correction;
-use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell_assumed_limits, warn};
-use crate::command::streams::{check_request, outputs_of, tables, tell_written};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, report_assumed_limits, warn};
+use crate::command::streams::{check_request, outputs_of, report_written, tables};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let mut files = outputs_of(&request);
     let mut out = files.start_wanted(args.out.as_deref())?;
     let json = files.start_wanted(args.json.as_deref())?;
-    tell_assumed_limits(&job.machine, job.target.stages(&job.machine));
+    report_assumed_limits(&job.machine, job.target.stages(&job.machine));
     job.keep = kept_beside(args);
     let outcome = job.run(&bar).inspect_err(|_| {
         bar.clear();
@@ -174,7 +174,7 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     if let (None, Some(path), None) = (written, &args.out, &outcome.refusal) {
         writeln!(out, "{} is not written", path.display())?;
     }
-    tell_written(&mut *out, [written, args.json.as_deref()])
+    report_written(&mut *out, [written, args.json.as_deref()])
 }
 
 /// Prints the results of the logs, and the expected result of the next cut.

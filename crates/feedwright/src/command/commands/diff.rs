@@ -10,7 +10,7 @@ use miette::{IntoDiagnostic, Result, miette};
 use crate::command::args::diff::DiffArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{check_inputs, tables, tell_written};
+use crate::command::streams::{check_inputs, report_written, tables};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::job::JobError;
 use crate::output::{OutputFile, OutputFiles};
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &DiffArgs, console: &Console) -> Result<ExitCode> {
         OutputFile::commit_all(vec![file], &console.bar(0))?;
     }
     let mut out = tables([args.report.as_deref()]);
-    let mut told = writeln!(out, "before: {}\nafter:  {}", before.name, after.name);
+    let mut reported = writeln!(out, "before: {}\nafter:  {}", before.name, after.name);
     let columns = ["", "before", "after", "ratio"]
         .map(TableColumn::new)
         .to_vec();
@@ -52,10 +52,10 @@ pub(crate) fn run(args: &DiffArgs, console: &Console) -> Result<ExitCode> {
         let [before, after] = [figure.before, figure.after].map(|value| format!("{value:.3}"));
         table.row(vec![figure.name.to_owned(), before, after, figure.ratio()]);
     }
-    told = told
+    reported = reported
         .and_then(|()| table.print(&mut *out))
-        .and_then(|()| tell_written(&mut *out, [args.report.as_deref()]));
-    printed(told, ExitCode::SUCCESS)
+        .and_then(|()| report_written(&mut *out, [args.report.as_deref()]));
+    printed(reported, ExitCode::SUCCESS)
 }
 
 /// A result by the ending of its file, else a program.

@@ -10,7 +10,7 @@ use miette::Result;
 use crate::command::args::excite::ExciteArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{tables, tell_written};
+use crate::command::streams::{report_written, tables};
 use crate::command::terminal::wrapped;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
@@ -24,9 +24,9 @@ pub(crate) fn run(args: &ExciteArgs, console: &Console) -> Result<ExitCode> {
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
-    let told =
-        writeln!(out, "{}", wrapped(&said, 2)).and_then(|()| tell_written(&mut *out, [place]));
-    printed(told, ExitCode::SUCCESS)
+    let reported =
+        writeln!(out, "{}", wrapped(&said, 2)).and_then(|()| report_written(&mut *out, [place]));
+    printed(reported, ExitCode::SUCCESS)
 }
 
 /// The program, and what to say of it.

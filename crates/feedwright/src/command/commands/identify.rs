@@ -17,7 +17,7 @@ use crate::command::args::identify::IdentifyArgs;
 use crate::command::console::Console;
 use crate::command::date::today;
 use crate::command::message::printed;
-use crate::command::streams::{tables, tell_written};
+use crate::command::streams::{report_written, tables};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::controllers::{CONTROLLERS, Choices, Setup, identifying};
 use crate::output::{OutputError, OutputFile, OutputFiles};
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let bar = console.bar(0);
     let mut steps = identifying(&machine, &bar);
     let mut progress = |part: f64| steps.reach(part);
-    let mut setup = Setup::new(&machine, &choices).telling(&mut progress);
+    let mut setup = Setup::new(&machine, &choices).reporting(&mut progress);
     let trained = setup.train(controller, usize::from(args.axes), date);
     let found = setup
         .found()
@@ -77,7 +77,7 @@ fn print(
     if !found.is_empty() {
         print_axes(&mut *out, found, machine)?;
     }
-    tell_written(&mut *out, [Some(place)])
+    report_written(&mut *out, [Some(place)])
 }
 
 /// Prints the estimated parameters of each axis, with standard errors.

@@ -7,7 +7,7 @@ use miette::Result;
 use crate::command::args::linuxcnc::{LinuxcncArgs, LinuxcncCommand, LinuxcncSetupArgs};
 use crate::command::console::Console;
 use crate::command::message::{MISTAKES, printed};
-use crate::command::streams::tell_written;
+use crate::command::streams::report_written;
 use crate::command::terminal::wrapped;
 use crate::linuxcnc_setup::LinuxcncSetup;
 
@@ -37,16 +37,16 @@ pub(crate) fn run(args: &LinuxcncArgs, console: &Console) -> Result<ExitCode> {
         setup.wire(&console.bar(0))?
     };
     let mut out = io::stdout().lock();
-    let told = write!(out, "{}", wiring.text(|line| wrapped(line, 4)));
-    let told = told.and_then(|()| match wiring.is_wired() {
-        true => tell_written(
+    let reported = write!(out, "{}", wiring.text(|line| wrapped(line, 4)));
+    let reported = reported.and_then(|()| match wiring.is_wired() {
+        true => report_written(
             &mut out,
             wiring.written.iter().map(|path| Some(path.as_path())),
         ),
         false => writeln!(out, "Nothing was written."),
     });
     printed(
-        told,
+        reported,
         if wiring.is_wired() {
             ExitCode::SUCCESS
         } else {
@@ -58,13 +58,13 @@ pub(crate) fn run(args: &LinuxcncArgs, console: &Console) -> Result<ExitCode> {
 fn undo(setup: &LinuxcncSetup) -> Result<ExitCode> {
     let [removed, kept] = setup.undo()?;
     let mut out = io::stdout().lock();
-    let told = removed
+    let reported = removed
         .iter()
         .try_for_each(|path| writeln!(out, "removed {}", path.display()));
-    let told = told.and_then(|()| {
+    let reported = reported.and_then(|()| {
         kept.iter().try_for_each(|path| {
             writeln!(out, "kept {}, which was changed by hand", path.display())
         })
     });
-    printed(told, ExitCode::SUCCESS)
+    printed(reported, ExitCode::SUCCESS)
 }

@@ -10,7 +10,7 @@ use miette::{IntoDiagnostic, Result, miette};
 
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{tables, tell_written};
+use crate::command::streams::{report_written, tables};
 use crate::command::terminal::wrapped;
 use crate::controllers::{BEST, Controllers, Entry, range};
 use crate::machine_document::machine_document;
@@ -50,7 +50,7 @@ pub(crate) fn machine(name: &str, out: Option<&Path>, console: &Console) -> Resu
         .map_err(|error| OutputError::from_io(error, out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     printed(
-        tell_written(&mut *tables([Some(out)]), [Some(out)]),
+        report_written(&mut *tables([Some(out)]), [Some(out)]),
         ExitCode::SUCCESS,
     )
 }

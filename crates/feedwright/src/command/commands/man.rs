@@ -35,9 +35,9 @@ pub(crate) fn run(args: &ManArgs, console: &Console) -> Result<ExitCode> {
     let count = complete.len();
     OutputFile::commit_all(complete, &console.bar(0))?;
     let mut out = std::io::stdout().lock();
-    let told = std::io::Write::write_fmt(
+    let reported = std::io::Write::write_fmt(
         &mut out,
         format_args!("wrote {count} pages in {}\n", args.out.display()),
     );
-    printed(told, ExitCode::SUCCESS)
+    printed(reported, ExitCode::SUCCESS)
 }

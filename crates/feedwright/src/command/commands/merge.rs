@@ -9,7 +9,7 @@ use miette::{Result, miette};
 use crate::command::args::sweep::MergeArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{tables, tell_written};
+use crate::command::streams::{report_written, tables};
 use crate::command::sweep::result_table::ResultTable;
 use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
 
@@ -24,9 +24,9 @@ pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<ExitCode> {
     OutputFile::commit_all(vec![file], &bar)?;
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
-    let told = writeln!(out, "{} results", table.rows.len())
-        .and_then(|()| tell_written(&mut *out, [place]));
-    printed(told, ExitCode::SUCCESS)
+    let reported = writeln!(out, "{} results", table.rows.len())
+        .and_then(|()| report_written(&mut *out, [place]));
+    printed(reported, ExitCode::SUCCESS)
 }
 
 /// Returns the function that writes a table with the ending of `path`. The standard output gets

@@ -48,7 +48,7 @@ pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
     let server = PageServer::bind(args.files, hal).into_diagnostic()?;
     let address = server.address();
     let mut out = io::stdout();
-    let told = writeln!(out, "{address}").and_then(|()| out.flush());
+    let reported = writeln!(out, "{address}").and_then(|()| out.flush());
     if !args.no_browser && !show(&address) {
         remark("no browser was found: open the address above in one");
     }
@@ -56,7 +56,7 @@ pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
         remark("the page is for this computer only; Ctrl-C ends it");
     }
     server.serve();
-    printed(told, ExitCode::SUCCESS)
+    printed(reported, ExitCode::SUCCESS)
 }
 
 fn no_halcmd(error: io::Error) -> Report {

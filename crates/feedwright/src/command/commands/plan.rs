@@ -18,9 +18,9 @@ use serde_json::json;
 use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
 use crate::command::date::today;
-use crate::command::message::{printed, remark, tell_assumed_limits, warn};
+use crate::command::message::{printed, remark, report_assumed_limits, warn};
 use crate::command::progress::Bar;
-use crate::command::streams::{check_request, outputs_of, tables, tell_written};
+use crate::command::streams::{check_request, outputs_of, report_written, tables};
 use crate::compensation::GeometryChoice;
 use crate::controllers::CONTROLLERS;
 use crate::cycle_time::along::BindingStretch;
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
                 .map_while(std::result::Result::ok),
         ))
     };
-    tell_assumed_limits(&machine, stages);
+    report_assumed_limits(&machine, stages);
     let constraints = Constraints::from(&machine);
     let options = CycleTimeOptions {
         bound: false,
@@ -236,7 +236,7 @@ fn machine(request: &JobRequest) -> Result<Machine> {
         .unwrap_or(MOST_UM)
         .min(tolerance_um);
     let planned = machine.planned_by_axes(path_um.min(MOST_UM));
-    tell_assumed_limits(&machine, Stages::of(&planned));
+    report_assumed_limits(&machine, Stages::of(&planned));
     Ok(planned)
 }
 
@@ -501,7 +501,7 @@ impl PlanOutcome {
         if let Some(operated) = operated {
             print_operated(args, operated, &mut *out)?;
         }
-        tell_written(&mut *out, files())
+        report_written(&mut *out, files())
     }
 }
 

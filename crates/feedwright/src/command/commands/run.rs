@@ -13,7 +13,9 @@ use miette::{Result, miette};
 use crate::command::args::run::RunArgs;
 use crate::command::console::Console;
 use crate::command::date::today;
-use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
+use crate::command::message::{
+    OUT_OF_TOLERANCE, printed, remark, report_assumed_limits, show, warn,
+};
 use crate::command::streams::{check_request, outputs_of, tables};
 use crate::controllers::{BEST, Controllers};
 use crate::correct::TARGETS;
@@ -32,7 +34,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     let bar = console.bar(0);
     let job = request.job(table, &today()?, &bar)?;
     if let Some(stages) = limits_used(&job) {
-        tell_assumed_limits(&job.machine, stages);
+        report_assumed_limits(&job.machine, stages);
     }
     bar.begin("reading the program", 1);
     let checked = job.check()?;
@@ -47,7 +49,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
             },
         ) => {
             bar.clear();
-            tell(&error.into());
+            show(&error.into());
             return Ok(ExitCode::from(OUT_OF_TOLERANCE));
         }
         // The rows go to files, whose errors name them.
@@ -65,7 +67,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     for remark in outcome.without_identification.iter().cloned() {
         warn(remark.into());
     }
-    outcome.doubts.iter().for_each(|doubt| remark(doubt));
+    outcome.undetermined.iter().for_each(|axes| remark(axes));
     outcome
         .log_findings
         .iter()

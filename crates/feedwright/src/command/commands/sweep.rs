@@ -10,7 +10,7 @@ use miette::{Report, Result, miette};
 
 use crate::command::args::sweep::{JobShard, SweepJobsArgs};
 use crate::command::console::Console;
-use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, show};
 use crate::command::progress::Bar;
 use crate::command::streams::{make_folder, tables};
 use crate::command::sweep::job_list::JobList;
@@ -126,7 +126,7 @@ impl Tally {
             self.mistaken += 1;
             if self.mistaken <= NAMED {
                 bar.aside(|| {
-                    tell(&miette!(
+                    show(&miette!(
                         "{name}: {}",
                         error.lines().collect::<Vec<_>>().join("; ")
                     ));
@@ -138,7 +138,7 @@ impl Tally {
     fn miss(&mut self, error: Report, bar: &Bar) {
         self.missing += 1;
         if self.missing <= NAMED {
-            bar.aside(|| tell(&error));
+            bar.aside(|| show(&error));
         }
     }
 
@@ -157,7 +157,7 @@ impl Tally {
             );
             return Err(error.wrap_err(what));
         }
-        let mut told = format!(
+        let mut reported = format!(
             "{} jobs: {computed} computed, {found} found",
             computed + found + missing
         );
@@ -167,13 +167,13 @@ impl Tally {
             (missing, "without a result"),
         ] {
             if count > 0 {
-                told += &format!(", {count} {what}");
+                reported += &format!(", {count} {what}");
             }
         }
         if missing > 0 {
             return Err(miette!(
                 help = "mend what the messages above name, and start the same command again",
-                "{told}"
+                "{reported}"
             ));
         }
         let code = if mistaken > 0 {
@@ -181,6 +181,6 @@ impl Tally {
         } else {
             ExitCode::SUCCESS
         };
-        printed(writeln!(tables([]), "{told}"), code)
+        printed(writeln!(tables([]), "{reported}"), code)
     }
 }

@@ -18,7 +18,7 @@ use feedwright_plan::vector::{Vector, add_scaled, sub};
 /// Number of bands: the last one has all slower parts.
 const BANDS: u32 = 9;
 /// Smallest part of one record that counts as not repeating.
-const DOUBT: f64 = 0.5;
+const NOT_REPEATED: f64 = 0.5;
 /// Power of disturbance and noise in one record, relative to the machine file.
 const SCATTER: f64 = 2.0;
 
@@ -104,7 +104,7 @@ pub(super) fn repeating(records: &[Vec<Vector>], noise: &[Vector]) -> Vec<Vector
         for axis in 0..3 {
             let power = mean_square(band, axis);
             let random = if apart.is_empty() {
-                (SCATTER * mean_square(&noise[b], axis)).max(DOUBT * power)
+                (SCATTER * mean_square(&noise[b], axis)).max(NOT_REPEATED * power)
             } else {
                 apart
                     .iter()

@@ -364,14 +364,14 @@ pub(super) fn write_notes(
 ) -> io::Result<()> {
     out.write_all(NOTES.as_bytes())?;
     out.write_all(b"<div class=\"pair\">\n")?;
-    let told = |entries: &[(String, String)]| -> Vec<(String, String)> {
+    let reported = |entries: &[(String, String)]| -> Vec<(String, String)> {
         entries
             .iter()
             .map(|(name, value)| (name.clone(), units.text(value)))
             .collect()
     };
-    write_list(out, "Settings", &told(&report.settings))?;
-    write_list(out, "Machine", &told(&report.machine))?;
+    write_list(out, "Settings", &reported(&report.settings))?;
+    write_list(out, "Machine", &reported(&report.machine))?;
     let mut facts = Vec::new();
     for run in &report.runs {
         let summary = &run.summary;

@@ -108,7 +108,7 @@ impl Evidence {
     }
 
     /// The first signs of both machines where none is certain and the number of kinds decided.
-    pub(crate) fn doubt(&self) -> Option<(Sign, Sign)> {
+    pub(crate) fn conflict(&self) -> Option<(Sign, Sign)> {
         let is_certain = self
             .lathe
             .iter()

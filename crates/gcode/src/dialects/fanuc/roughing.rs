@@ -49,7 +49,7 @@ impl<'a> Roughing<'a> {
             allowance_mm,
         } = capture.wanted.work
         else {
-            return Err(capture.refuse(capture.wanted.line, "it is none of G71 or G72"));
+            return Err(capture.refuse(capture.wanted.line, "it belongs to neither G71 nor G72"));
         };
         let axes = if is_facing { [0, 2] } else { [2, 0] };
         let (entry, rest) = capture

@@ -39,7 +39,7 @@ const LAST_STEPS: u32 = 6;
 /// Largest part of the squares of a rigid screw that may be left, and standard errors by which less
 /// is left from stretch to stretch.
 const LESS: f64 = 0.97;
-const BEYOND_DOUBT: f64 = 4.0;
+const SIGNIFICANT: f64 = 4.0;
 /// Standard errors of resonance and share at the most, parts of them.
 const CERTAIN: [f64; 2] = [0.1, 0.3];
 
@@ -102,7 +102,7 @@ fn is_below(pairs_mm2: impl Iterator<Item = (f64, f64)>) -> bool {
     let n = less.len() as f64;
     let mean = less.iter().sum::<f64>() / n;
     let variance = less.iter().map(|less| (less - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    mean > BEYOND_DOUBT * (variance / n).sqrt()
+    mean > SIGNIFICANT * (variance / n).sqrt()
 }
 
 fn start(fit: &OutputErrorFit, rigid: Parameters, hz: f64, backlash_share: f64) -> Parameters {
@@ -129,7 +129,7 @@ mod tests {
         assert!(is_below(&[&moves]) && is_below(&[&moves, &stands]));
         assert!(
             !is_below(&[&stands]) && !is_below(&[&moves[..1]]),
-            "there is no doubt to be judged by"
+            "there is no spread to compare with"
         );
         assert!(!is_below(&[&[(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)]]));
     }

@@ -115,7 +115,7 @@ pub(super) fn admit(
     [train, valid]: [&[bool]; 2],
     facts: &AxisFacts,
     priors: &[Prior],
-    mut tell: impl FnMut(f64) -> bool,
+    mut progress: impl FnMut(f64) -> bool,
 ) -> Option<Admitted> {
     let deviation_mm = record.following_mm(train);
     let [train, valid] = [train, valid].map(|counts| OutputErrors {
@@ -126,7 +126,7 @@ pub(super) fn admit(
     });
     let (mut terms, mut at) = begin(record, [&train, &valid], facts);
     for round in 0..MOST_TERMS {
-        if !tell((round + 1) as f64 / (MOST_TERMS + 1) as f64) {
+        if !progress((round + 1) as f64 / (MOST_TERMS + 1) as f64) {
             return None;
         }
         let train = train.scaled_by(&at);
@@ -569,7 +569,7 @@ fn candidates(
     let mut candidates = vec![];
     for term in ModelTerm::ALL {
         // Without an integral the two parts of the damping are the same to the position.
-        let is_told = match term {
+        let is_determined = match term {
             ModelTerm::Viscous => terms.contains(&ModelTerm::Integral) && at.get(term) == 0.0,
             // Without velocity feedforward a command that follows the drive rings: no drive is
             // tuned so.
@@ -581,7 +581,7 @@ fn candidates(
             ModelTerm::Backlash => terms.contains(&ModelTerm::Resonance),
             _ => true,
         };
-        if terms.contains(&term) || !is_told || facts.known(term).is_some() {
+        if terms.contains(&term) || !is_determined || facts.known(term).is_some() {
             continue;
         }
         for value in (term.row().tried)(&log) {

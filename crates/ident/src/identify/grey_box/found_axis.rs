@@ -282,7 +282,7 @@ impl FoundAxis {
 
     /// All numbers, those that positions determine first.
     pub fn numbers(&self) -> Vec<FoundNumber> {
-        let told = self.axis_model();
+        let stated = self.axis_model();
         let mut numbers: Vec<FoundNumber> = ModelTerm::ALL
             .into_iter()
             .filter(|term| {
@@ -294,13 +294,13 @@ impl FoundAxis {
                         | ModelTerm::Offset
                 );
                 let needs = match term {
-                    ModelTerm::StribeckSpeed => told.get(ModelTerm::Stribeck) > 0.0,
-                    ModelTerm::TableShare => told.get(ModelTerm::Resonance) > 0.0,
+                    ModelTerm::StribeckSpeed => stated.get(ModelTerm::Stribeck) > 0.0,
+                    ModelTerm::TableShare => stated.get(ModelTerm::Resonance) > 0.0,
                     _ => true,
                 };
-                (always || told.get(*term) != 0.0) && needs
+                (always || stated.get(*term) != 0.0) && needs
             })
-            .map(|term| self.number(term, told.get(term)))
+            .map(|term| self.number(term, stated.get(term)))
             .collect();
         let (inertia, error, source) = self.inertia();
         let interval = error.map(|error| {
@@ -326,8 +326,8 @@ impl FoundAxis {
             source,
         ));
         let apart = self.gains_source();
-        numbers.push(number("kp_1_s", "Kp", "1/s", told.kp_1_s(), None, apart));
-        let kv = told.speed_gain_1_s() * inertia;
+        numbers.push(number("kp_1_s", "Kp", "1/s", stated.kp_1_s(), None, apart));
+        let kv = stated.speed_gain_1_s() * inertia;
         let of_kv = if source == NumberSource::Assumed {
             NumberSource::Assumed
         } else {

@@ -40,7 +40,7 @@ const LOOPS_APART: f64 = 0.25;
 /// A change of a gain by less than this factor is not tried. A change that leaves more than this
 /// part of the error is not reported.
 const WORTH_TRYING: f64 = 1.1;
-const WORTH_TELLING: f64 = 0.8;
+const WORTH_REPORTING: f64 = 0.8;
 
 impl GainChange {
     /// Returns the changes that are worth reporting, the least error last.
@@ -72,7 +72,7 @@ impl GainChange {
                 predicted_um(record, &other, counts),
                 simulated_um(record, &other, counts),
             );
-            if simulated_um < WORTH_TELLING * now_um {
+            if simulated_um < WORTH_REPORTING * now_um {
                 changes.push(Self {
                     kp_1_s,
                     velocity_feedforward,

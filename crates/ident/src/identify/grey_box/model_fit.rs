@@ -27,7 +27,7 @@ const SETTLING_S: f64 = 0.2;
 /// Steps of the last fit.
 const STEPS: usize = 40;
 /// Largest residual of a model, as a part of the following error. With more, no model was found.
-const NO_LAW: f64 = 0.9;
+const NO_MODEL: f64 = 0.9;
 /// Friction from a torque column holds where the fit is worse by no more than this.
 const HOLDS: f64 = 1.15;
 /// Parts of the work: admission, and the last fit.
@@ -39,7 +39,7 @@ pub(super) fn find(
     torque: Option<&[f64]>,
     split: &SampleSplit,
     facts: AxisFacts,
-    tell: &mut dyn FnMut(f64) -> bool,
+    progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<FoundAxis, NotFound> {
     let (train, valid, moving_s) = split.inner(record);
     if moving_s == 0.0 {
@@ -56,7 +56,7 @@ pub(super) fn find(
         .map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
     let priors = Prior::all(&facts);
     let admitted = admit(&thinned, [&train, &valid], &facts, &priors, |part| {
-        tell(PARTS[0] * part)
+        progress(PARTS[0] * part)
     })
     .ok_or(NotFound::Ended)?;
     let deviation_mm = record.following_mm(&split.fit);
@@ -77,7 +77,7 @@ pub(super) fn find(
     let values = errors.least(&values, &terms, STEPS, DONE).values;
     let certain = StandardErrors::of(&errors, &values, &terms);
     let rms_mm = errors.rms_mm(&values);
-    go_on(tell(PARTS[1]))?;
+    go_on(progress(PARTS[1]))?;
     is_model(record, &split.fit, rms_mm)?;
     let half_intervals = certain
         .errors
@@ -88,7 +88,7 @@ pub(super) fn find(
         Some(window_s) => with_window(&errors, window_s, &values, &terms, rms_mm),
         None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, rms_mm)),
     };
-    go_on(tell(0.5 * (PARTS[1] + 1.0)))?;
+    go_on(progress(0.5 * (PARTS[1] + 1.0)))?;
     let at_bounds = early
         .into_iter()
         .chain(at_bounds(
@@ -119,7 +119,7 @@ pub(super) fn find(
         values,
         terms,
     };
-    go_on(tell(1.0))?;
+    go_on(progress(1.0))?;
     Ok(found)
 }
 
@@ -217,8 +217,8 @@ fn without_doubtful(
         if term == ModelTerm::RecordDelay
             && at.get(term) + DOUBTFUL * certain.errors[i] < -EARLY * errors.record.sample_s
         {
-            let is_told = !self::is_needless(&independent, &at, &terms, i);
-            early = is_told.then_some(SearchBound {
+            let is_determined = !self::is_needless(&independent, &at, &terms, i);
+            early = is_determined.then_some(SearchBound {
                 term,
                 value: at.get(term),
                 bound: 0.0,
@@ -262,7 +262,7 @@ const DOUBTFUL: f64 = 1.96;
 /// Fails if the residual of a fit is too large for a model.
 fn is_model(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), NotFound> {
     let following_mm = record.following_mm(fit);
-    if left_mm <= NO_LAW * following_mm {
+    if left_mm <= NO_MODEL * following_mm {
         return Ok(());
     }
     Err(NotFound::NoModel {
@@ -297,7 +297,7 @@ fn with_window(
     rms_mm: f64,
 ) -> Option<ResolvedModel> {
     let servo_s = periods(errors.record.sample_s).0.servo_s;
-    let told = [
+    let stated = [
         ModelTerm::RecordDelay,
         ModelTerm::LoopDelay,
         ModelTerm::FilterTime,
@@ -306,7 +306,7 @@ fn with_window(
     let free: Vec<ModelTerm> = terms
         .iter()
         .copied()
-        .filter(|term| !told.contains(term))
+        .filter(|term| !stated.contains(term))
         .collect();
     // To first order: what it is late by, it is too light by.
     let late_s = 0.5 * (window_s + servo_s);
@@ -321,7 +321,7 @@ fn with_window(
     .fold(*values, |start, term| {
         start.with(term, lighter * start.get(term))
     });
-    let start = told
+    let start = stated
         .into_iter()
         .fold(start, |start, term| start.with(term, 0.0));
     let start = start

@@ -49,7 +49,7 @@ const BLOCK_S: f64 = 0.25;
 /// Least part of the variance that the motion must explain, and least part that the equation of a
 /// drive must explain.
 const EXPLAINED: f64 = 0.9;
-const LAW_EXPLAINED: f64 = 0.99;
+const MODEL_EXPLAINED: f64 = 0.99;
 
 impl TorqueColumn {
     /// Fits the column over the samples that count. `None` if the motion does not explain it.
@@ -140,7 +140,7 @@ impl DriveColumn {
             .iter()
             .filter_map(with_window)
             .max_by(|a, b| a.explained.total_cmp(&b.explained))?;
-        let is_model = found.explained > LAW_EXPLAINED
+        let is_model = found.explained > MODEL_EXPLAINED
             && found.loop_gain_1_s2 > 0.0
             && found.speed_gain_1_s > 0.0;
         is_model.then_some(found)

@@ -107,7 +107,7 @@ fn at_bounds(bounds: &[SearchBound]) -> String {
 /// Names the parameters that the record leaves open, and the uncertainty that follows.
 fn open(unseen: &UnseenMotion) -> String {
     let names: Vec<&str> = unseen.terms.iter().map(|term| term.row().name).collect();
-    let untold = match names.as_slice() {
+    let undetermined = match names.as_slice() {
         [] => "the log does not determine the parameters".to_owned(),
         [one] => format!("the log does not determine {one}"),
         [first @ .., last] => format!("the log does not separate {} and {last}", first.join(", ")),
@@ -118,7 +118,7 @@ fn open(unseen: &UnseenMotion) -> String {
         None => "",
     };
     format!(
-        "{untold}{why}. On other motion up to its speed and acceleration the position is uncertain by {} um RMS, where the model leaves {} um",
+        "{undetermined}{why}. On other motion up to its speed and acceleration the position is uncertain by {} um RMS, where the model leaves {} um",
         um(unseen.uncertain_um),
         um(unseen.left_um)
     )

@@ -242,7 +242,7 @@ fn vibration_along_the_path_does_not_carry_the_progress_on() {
 }
 
 #[test]
-fn laps_over_each_other_are_told_apart() {
+fn laps_over_each_other_are_distinguished() {
     for radius_mm in [0.1, 1.0, 3.0] {
         let start = [radius_mm, 0.0, 0.0];
         let lap = || {

@@ -105,7 +105,7 @@ fn check_only(
 /// Reports two inputs of the same name, because their rows in the table would look the same.
 fn ambiguous(option: &str, name: &str) -> miette::Report {
     let help = match option {
-        "--part" => "the name is that of the file: give this one another",
+        "--part" => "the file has this name: give this one another",
         _ => {
             "give it another `name` in its file, or choose from those that are built in with --only"
         }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use feedwright::command::{ConsoleTable, TableColumn, tables, tell_written, wrapped};
+use feedwright::command::{ConsoleTable, TableColumn, report_written, tables, wrapped};
 
 use crate::compare::Comparison;
 use crate::compare::table::ComparisonRow;
@@ -19,7 +19,7 @@ pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Res
     rows(&comparison.rows).print(out)?;
     print_at_tolerance(out, &comparison.at_tolerance)?;
     print_verdicts(out, &comparison.verdicts)?;
-    tell_written(out, files())
+    report_written(out, files())
 }
 
 /// Returns the results of the searches as text.

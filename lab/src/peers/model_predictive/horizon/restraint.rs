@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_needed_beyond_the_deviation_or_beyond_what_the_acceleration_reaches_has_a_price() {
+    fn what_is_needed_beyond_the_deviation_or_beyond_what_the_acceleration_reaches_has_a_cost() {
         assert!(restrained(0.01, 0.0, 0.1).offset_weight < 1e-6);
         assert!((restrained(0.25, 0.0, 0.1).offset_weight - 0.0625).abs() < 1e-12);
         // 2 * 100 mm/s^2 * (20 ms)^2 = 0.08 mm: the slowest of the axes there are.

@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, Result};
 use crate::command::args::identify::{IdentifyArgs, LogArgs};
 use crate::command::console::Console;
 use crate::command::message::{printed, remark};
-use crate::command::streams::{check_inputs, tables, tell_written};
+use crate::command::streams::{check_inputs, report_written, tables};
 use crate::command::terminal::wrapped;
 use crate::log_job::{LogIdentified, LogJob, machine_text, updated_text, write_json, write_page};
 use crate::output::{OutputError, OutputFile, OutputFiles};
@@ -199,5 +199,5 @@ fn print(
     {
         writeln!(out, "{}", wrapped(&line, 2))?;
     }
-    tell_written(&mut *out, places())
+    report_written(&mut *out, places())
 }

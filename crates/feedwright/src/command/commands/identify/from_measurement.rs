@@ -15,7 +15,7 @@ use miette::{IntoDiagnostic, Result, miette};
 use crate::command::args::identify::{AxisFile, IdentifyArgs};
 use crate::command::console::Console;
 use crate::command::message::printed;
-use crate::command::streams::{check_inputs, tables, tell_written};
+use crate::command::streams::{check_inputs, report_written, tables};
 use crate::command::terminal::wrapped;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 use crate::results_format::{stamped, write_json};
@@ -132,5 +132,5 @@ fn print(found: &FoundGeometry, places: &[&Path]) -> std::io::Result<()> {
         "the geometry leaves {after_um} um RMS of {before_um} um in {} values",
         check.rows
     )?;
-    tell_written(&mut *out, places())
+    report_written(&mut *out, places())
 }

@@ -17,7 +17,7 @@ use crate::report::{
 
 use super::files::Outputs;
 use crate::command::controls::print_correction;
-use crate::command::streams::tell_written;
+use crate::command::streams::report_written;
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::{is_inch, wrapped};
 
@@ -284,7 +284,7 @@ fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -
         learned,
         ..
     } = outputs;
-    tell_written(
+    report_written(
         out,
         [
             report.as_deref(),

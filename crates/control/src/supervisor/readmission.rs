@@ -37,7 +37,7 @@ const NO_CHANGE_MM_S: f64 = 1.0;
 
 /// Progress of the test since the model was last wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct ProofTrial {
+struct ReadmissionTrial {
     /// True once c was small.
     calm: bool,
     /// Time since c was reached again, s, and time for which it was reached, s.
@@ -45,7 +45,7 @@ struct ProofTrial {
     at_as_much_s: f64,
 }
 
-impl ProofTrial {
+impl ReadmissionTrial {
     const BEGUN: Self = Self {
         calm: false,
         since_s: None,
@@ -75,7 +75,7 @@ impl ProofTrial {
 
 /// Changes of the commanded speed, while the model was wrong and since then.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Proof<const N: usize> {
+pub(super) struct Readmission<const N: usize> {
     path_mm: Option<[f64; N]>,
     /// `None` until the speed is known.
     mean_mm_s: Option<[f64; N]>,
@@ -85,10 +85,10 @@ pub(super) struct Proof<const N: usize> {
     /// True if the model has not passed the test yet; `needs_s` is T, s.
     needed: bool,
     needs_s: f64,
-    trial: ProofTrial,
+    trial: ReadmissionTrial,
 }
 
-impl<const N: usize> Proof<N> {
+impl<const N: usize> Readmission<N> {
     /// State of a model that was never wrong.
     pub(super) const NOT_NEEDED: Self = Self {
         path_mm: None,
@@ -97,7 +97,7 @@ impl<const N: usize> Proof<N> {
         wrong_mm_s: 0.0,
         needed: false,
         needs_s: TO_SHOW_S,
-        trial: ProofTrial::BEGUN,
+        trial: ReadmissionTrial::BEGUN,
     };
 
     /// Takes in a servo period in which the model is wrong or holds. At rest it gives no evidence
@@ -115,7 +115,7 @@ impl<const N: usize> Proof<N> {
         }
         self.lately_mm_s = change_mm_s.max((1.0 - part) * self.lately_mm_s);
         if wrong {
-            (self.needed, self.trial) = (true, ProofTrial::BEGUN);
+            (self.needed, self.trial) = (true, ReadmissionTrial::BEGUN);
             self.wrong_mm_s = self.wrong_mm_s.max(self.lately_mm_s);
         } else if self.needed && !moves {
             self.trial.calm |= change_mm_s < LITTLE * self.wrong_mm_s;
@@ -143,14 +143,14 @@ mod tests {
 
     /// Along a line whose speed goes from 0 to 50 mm/s within 25 ms, 0.4 s each; `wrong` by the
     /// servo period.
-    fn goes(corners: usize, wrong: impl Fn(usize) -> bool) -> Proof<1> {
-        let mut proof = Proof::NOT_NEEDED;
+    fn goes(corners: usize, wrong: impl Fn(usize) -> bool) -> Readmission<1> {
+        let mut readmission = Readmission::NOT_NEEDED;
         let mut x_mm = 0.0;
         for n in 0..400 * corners {
             x_mm += 50.0 * SERVO_S * ((n % 400) as f64 / 25.0).min(1.0);
-            proof.take_in([x_mm], true, wrong(n), SERVO_S);
+            readmission.take_in([x_mm], true, wrong(n), SERVO_S);
         }
-        proof
+        readmission
     }
 
     #[test]
@@ -158,7 +158,7 @@ mod tests {
         assert!(!goes(1, |_| false).is_needed());
         assert!(
             goes(1, |n| (10..40).contains(&n)).is_needed(),
-            "the straight line behind is no proof"
+            "the straight line behind is not enough"
         );
         assert!(
             !goes(2, |n| (10..40).contains(&n)).is_needed(),
@@ -168,16 +168,16 @@ mod tests {
     }
 
     #[test]
-    fn where_the_speed_changes_all_the_time_the_proof_takes_longer_each_time() {
-        let mut proof = Proof::NOT_NEEDED;
+    fn where_the_speed_changes_all_the_time_readmission_takes_longer_each_time() {
+        let mut readmission = Readmission::NOT_NEEDED;
         let mut periods = 0;
         let mut holds_for = || {
             let mut after_s = 0.0;
             for n in 0_u32.. {
                 let t_s = f64::from(periods) * SERVO_S;
                 periods += 1;
-                proof.take_in([50.0 * t_s * t_s], true, n < 200, SERVO_S);
-                if !proof.is_needed() {
+                readmission.take_in([50.0 * t_s * t_s], true, n < 200, SERVO_S);
+                if !readmission.is_needed() {
                     break;
                 }
                 after_s = f64::from(n.saturating_sub(200)) * SERVO_S;
@@ -195,29 +195,30 @@ mod tests {
 
     #[test]
     fn one_that_begins_in_motion_has_changed_nothing() {
-        let mut proof = Proof::NOT_NEEDED;
-        (0..100_u32).for_each(|n| proof.take_in([0.05 * f64::from(n)], true, n < 20, SERVO_S));
-        assert!(!proof.is_needed(), "a straight line is proof enough");
+        let mut readmission = Readmission::NOT_NEEDED;
+        (0..100_u32)
+            .for_each(|n| readmission.take_in([0.05 * f64::from(n)], true, n < 20, SERVO_S));
+        assert!(!readmission.is_needed(), "a straight line is enough");
     }
 
     #[test]
-    fn a_shock_on_a_straight_line_needs_no_proof() {
+    fn a_shock_on_a_straight_line_needs_no_readmission() {
         assert!(!goes(1, |n| (250..260).contains(&n)).is_needed());
     }
 
     #[test]
     fn at_rest_no_model_holds_through_anything() {
-        let mut proof = Proof::<1>::NOT_NEEDED;
-        (0..10_000).for_each(|n| proof.take_in([0.0], false, n < 20, SERVO_S));
-        assert!(proof.is_needed());
-        (0..70_u32).for_each(|n| proof.take_in([0.05 * f64::from(n)], true, false, SERVO_S));
-        assert!(!proof.is_needed());
+        let mut readmission = Readmission::<1>::NOT_NEEDED;
+        (0..10_000).for_each(|n| readmission.take_in([0.0], false, n < 20, SERVO_S));
+        assert!(readmission.is_needed());
+        (0..70_u32).for_each(|n| readmission.take_in([0.05 * f64::from(n)], true, false, SERVO_S));
+        assert!(!readmission.is_needed());
     }
 
     #[test]
-    fn what_is_not_a_number_is_no_proof() {
-        let mut proof = goes(1, |n| (10..40).contains(&n));
-        proof.take_in([f64::NAN], true, false, SERVO_S);
-        assert!(proof.is_needed());
+    fn what_is_not_a_number_does_not_readmit() {
+        let mut readmission = goes(1, |n| (10..40).contains(&n));
+        readmission.take_in([f64::NAN], true, false, SERVO_S);
+        assert!(readmission.is_needed());
     }
 }
