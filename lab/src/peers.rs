@@ -16,6 +16,8 @@ mod cross_coupled_feedrate;
 mod constrained_feedrate;
 mod input_shaping;
 mod zero_phase;
+#[cfg(test)]
+mod fixture;
 mod sum;
 mod disturbance_rejection;
 mod disturbance_observer;
@@ -23,8 +25,6 @@ mod kalman_disturbance;
 mod h_infinity;
 mod iterative_learning;
 pub(crate) mod model_predictive;
-#[cfg(test)]
-mod fixture;
 mod closed_loop;
 mod make;
 
