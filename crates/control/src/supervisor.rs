@@ -3,7 +3,7 @@
 //!
 //! It holds each command within [`Bounds`], and engages a controller only while the correction
 //! brings the tool nearer to the path. All judges are in this folder, but for the one that needs no
-//! motion: whether a command can follow a drive (`axis/knowledge.rs`). A controller that predicts
+//! motion: whether a command can follow a drive (`axis/numbers.rs`). A controller that predicts
 //! keeps the state of the judges of its model, and reports their verdict ([`SelfReport`]).
 //!
 //! | File | Question | If not |
