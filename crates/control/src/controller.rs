@@ -100,20 +100,36 @@ macro_rules! members {
             $(#[doc = concat!("[`", stringify!($Name), "`].")] $Name($Type)),*
         }
 
+        /// Place of a controller in the table.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum MemberName {
+            $(#[doc = concat!("[`", stringify!($Name), "`].")] $Name),*
+        }
+
         impl<const N: usize> AnyController<N> {
             /// Rows of all controllers that a machine runs.
-            pub const ROWS: &[ControllerRow] = &[$(<$Type as Member<N>>::ROW),*];
+            pub const ROWS: &[(MemberName, ControllerRow)] =
+                &[$((MemberName::$Name, <$Type as Member<N>>::ROW)),*];
 
-            /// Creates the controller of a name; `None` where no controller has the name, or where
-            /// `data` lacks what it has to know.
-            pub fn make(name: &str, data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
-                $(if name == <$Type as Member<N>>::ROW.name {
-                    return <$Type>::make(data, values).map(Self::$Name);
-                })*
-                None
+            /// Creates a controller; `None` where `data` lacks what it has to know.
+            pub fn make(
+                member: MemberName,
+                data: &ControllerData<'_, N>,
+                values: Values<'_>,
+            ) -> Option<Self> {
+                match member {
+                    $(MemberName::$Name => <$Type>::make(data, values).map(Self::$Name)),*
+                }
             }
 
-            /// Returns the name of the controller.
+            /// Returns the place of the controller in the table.
+            pub fn member(&self) -> MemberName {
+                match self {
+                    $(Self::$Name(_) => MemberName::$Name),*
+                }
+            }
+
+            /// Returns the name of the controller on the command line.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$Name(_) => <$Type as Member<N>>::ROW.name),*

@@ -45,7 +45,7 @@
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`], [`SelfReport`] |
-//! | Making one | [`AnyController`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
+//! | Making one | [`AnyController`], [`MemberName`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
 //! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`Number`], [`AxisInverse`] |
@@ -114,7 +114,7 @@ pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::row::{ControllerData, ControllerRow, Knows, Member, Parameter, Values};
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
-pub use controller::{AnyController, Controller, OffsetBounds, Schedule};
+pub use controller::{AnyController, Controller, MemberName, OffsetBounds, Schedule};
 pub use geometry::{
     AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS,
 };

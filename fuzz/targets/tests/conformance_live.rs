@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use feedwright::{CONTROLLERS, Choices, Make, Setup, TWO_DIMENSIONAL};
 use feedwright_control::{
     AnyController, Bounds, Command, Controller, ControllerRow, IdentifiedAxes, IdentifierKind,
-    Knot, KnotSource, Knows, Measured, Part, Schedule, SelfReport, Tick, Window,
+    Knot, KnotSource, Knows, Measured, MemberName, Part, Schedule, SelfReport, Tick, Window,
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes};
 use feedwright_servo::machine::{live_controller, model_of};
@@ -122,7 +122,7 @@ fn axes_model(machine: &Machine) -> Model {
 /// Compares a controller of the table with the live one, both made with `model`. Returns the number
 /// of decisions that change the plan.
 fn corrections(
-    row: &ControllerRow,
+    (member, row): (MemberName, &ControllerRow),
     machine: &Machine,
     model: &Model,
     is_planned_elsewhere: bool,
@@ -134,7 +134,7 @@ fn corrections(
     let mut setup = Setup::new(machine, &choices);
     let bounds = Bounds::new(1.0, machine.limits.rapid_mm_s, 400.0);
     let block = model_of::<2>(&model.block(None)).unwrap();
-    let mut live = live_controller(row.name, &block.model, true);
+    let mut live = live_controller(member, &block.model, true);
     assert_eq!(live.name(), row.name);
     live.hold_to(setup.offset_bounds());
     let entry = CONTROLLERS.find(row.name).unwrap();
@@ -171,7 +171,7 @@ fn a_live_controller_commands_what_the_controller_of_run_commands() {
     let contour = Setup::new(&machine, &choices)
         .train(entry, 2, date)
         .unwrap();
-    for row in AnyController::<2>::ROWS {
+    for (member, row) in AnyController::<2>::ROWS {
         let model = match row.identifier {
             Some(IdentifierKind::Contour) => &contour,
             _ => &axes,
@@ -179,12 +179,12 @@ fn a_live_controller_commands_what_the_controller_of_run_commands() {
         if row.knows == Knows::ExactModel {
             // A model file is not exact.
             let block = model_of::<2>(&model.block(None)).unwrap();
-            let live = live_controller(row.name, &block.model, true);
+            let live = live_controller(*member, &block.model, true);
             assert_eq!(live.name(), "uncorrected");
             continue;
         }
         for is_planned_elsewhere in [false, true] {
-            let corrections = corrections(row, &machine, model, is_planned_elsewhere);
+            let corrections = corrections((*member, row), &machine, model, is_planned_elsewhere);
             assert_eq!(
                 corrections > 200,
                 row.knows != Knows::Nothing,

@@ -2,8 +2,7 @@
 
 use feedwright_control::{
     AnyController, BlockError, ControllerData, IdentifiedAxes, IdentifierKind, KnownGeometry,
-    LqgIdentified, MagnitudeOnly, Member, ModelBlock, OffsetBounds, Trained, TrainedModel,
-    TwoDimensional, Uncorrected,
+    MemberName, ModelBlock, OffsetBounds, Trained, TrainedModel, Uncorrected,
 };
 
 /// Why a model cannot be used here.
@@ -43,20 +42,20 @@ pub fn axes_of<const N: usize>(
     }
 }
 
-/// Returns the name of the controller that stands in the link with a model of this kind. With
-/// `speed_alone`, the geometry stays on the path, if there is such a controller.
-pub fn controller_name(kind: IdentifierKind, speed_alone: bool) -> &'static str {
+/// Returns the controller that stands in the link with a model of this kind. With `speed_alone`, the
+/// geometry stays on the path, if there is such a controller.
+pub fn member_of(kind: IdentifierKind, speed_alone: bool) -> MemberName {
     match kind {
-        IdentifierKind::Axes => LqgIdentified::<2>::ROW.name,
-        IdentifierKind::Contour if speed_alone => MagnitudeOnly::<2>::ROW.name,
-        IdentifierKind::Contour => TwoDimensional::<2>::ROW.name,
+        IdentifierKind::Axes => MemberName::LqgIdentified,
+        IdentifierKind::Contour if speed_alone => MemberName::MagnitudeOnly,
+        IdentifierKind::Contour => MemberName::TwoDimensional,
     }
 }
 
-/// Creates the controller of this name for the link, uncorrected if the model is of another kind.
-/// Unless `is_known`, it corrects nothing before motion has shown that the model is of this machine.
+/// Creates this controller for the link, uncorrected if the model is of another kind. Unless
+/// `is_known`, it corrects nothing before motion has shown that the model is of this machine.
 pub fn live_controller<const N: usize>(
-    name: &str,
+    member: MemberName,
     model: &TrainedModel<N>,
     is_known: bool,
 ) -> AnyController<N> {
@@ -67,7 +66,7 @@ pub fn live_controller<const N: usize>(
         tries: true,
         is_known,
     };
-    AnyController::make(name, &data, &|parameter| parameter.default)
+    AnyController::make(member, &data, &|parameter| parameter.default)
         .unwrap_or(AnyController::Uncorrected(Uncorrected))
 }
 

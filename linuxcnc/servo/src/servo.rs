@@ -36,7 +36,7 @@ use crate::fading::Fading;
 use crate::history::{Delayed, History, NEWER};
 use crate::latch::Latch;
 use crate::limits::{LinkLimits, Setting};
-use crate::machine::{Refused, controller_name, fits, live_controller};
+use crate::machine::{Refused, fits, live_controller, member_of};
 use crate::through::{PassedThrough, Through};
 
 /// A spindle is followed until the command has rested for so long since its index was awaited, s:
@@ -206,8 +206,8 @@ impl<const N: usize> Servo<N> {
             .map_or(WITHOUT_MODEL_S, |model| model.servo_s);
         let controller = match &model {
             Ok(model) => {
-                let name = controller_name(model.trained.kind(), LinkLimits::DEFAULT.speed_alone);
-                live_controller(name, model, false)
+                let member = member_of(model.trained.kind(), LinkLimits::DEFAULT.speed_alone);
+                live_controller(member, model, false)
             }
             Err(_) => AnyController::Uncorrected(Uncorrected),
         };
@@ -464,9 +464,9 @@ impl<const N: usize> Servo<N> {
         // is asked to.
         let ahead = (delay - NEWER - 1) as u32;
         if let Ok(model) = &self.model {
-            let name = controller_name(model.trained.kind(), self.limits.speed_alone);
-            if name != self.controller.name() {
-                self.controller = live_controller(name, model, false);
+            let member = member_of(model.trained.kind(), self.limits.speed_alone);
+            if member != self.controller.member() {
+                self.controller = live_controller(member, model, false);
             }
         }
         let mut schedule = self.controller.schedule();
