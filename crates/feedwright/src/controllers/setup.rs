@@ -8,15 +8,15 @@ use feedwright_control::{
     Knows, Member, OffsetBounds, Part, RESPONSES_S, Trained, TrainedModel, Uncorrected, Values,
 };
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
-    an_identifier, identify_axis,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, TrainedAxes,
+    TrainedContour, Training, an_identifier, identify_axis,
 };
 use feedwright_sim::{Known, KnownAxis, Machine};
 use miette::Diagnostic;
 use thiserror::Error;
 
 use super::{CONTROLLERS, Choices, Entry};
-use crate::identifier_cache::{identified, identified_axes, recorded_and_trained};
+use crate::identifier_cache::{identified_axes, recorded_and_trained};
 
 /// Inputs from which a controller is made.
 pub struct Setup<'a> {
@@ -397,24 +397,16 @@ impl<'a> Setup<'a> {
             return model.control();
         }
         let servo_s = self.known.period.servo_s;
-        let (machine, seed) = (self.machine, self.choices.seed);
         match kind {
             IdentifierKind::Axes => {
-                let recordings = AxisRecordings::of(machine, seed);
-                let axes = identified_axes(&recordings, &machine.known(), &self.known);
-                self.found = axes.as_ref().err().map(|cause| Err(*cause));
-                let axes = axes.ok()?.axes.at_servo_period(servo_s)?;
-                Some(TrainedModel::of_axes(axes))
+                let (_, trained) = self.train_axes::<N>().ok()?;
+                Some(TrainedModel::of_axes(
+                    trained.axes.at_servo_period(servo_s)?,
+                ))
             }
             IdentifierKind::Contour => {
                 let feed_period_s = values(&INVERSION_PERIOD_S);
-                let excitation = Excitation {
-                    feed_period_s,
-                    ..Excitation::general()
-                };
-                let training = Training::default();
-                let report_progress = &mut |part| self.report_progress(part);
-                let net = identified(machine, &excitation, &training, seed, report_progress).net;
+                let (_, TrainedContour { net, .. }) = self.train_contour::<N>(feed_period_s);
                 let servo_periods = self.known.period.servo_periods(feed_period_s);
                 Some(TrainedModel {
                     servo_s,
@@ -458,6 +450,25 @@ impl<'a> Setup<'a> {
                 .map_err(|cause| *cause),
         );
         Ok((recordings, trained?))
+    }
+
+    /// Records the machine and trains the identifier of its contour error for decisions every
+    /// `feed_period_s`, or finds it kept.
+    fn train_contour<const N: usize>(
+        &mut self,
+        feed_period_s: f64,
+    ) -> (Recording<N>, TrainedContour<N>) {
+        let excitation = Excitation {
+            feed_period_s,
+            ..Excitation::general()
+        };
+        recorded_and_trained(
+            self.machine,
+            &excitation,
+            &Training::default(),
+            self.choices.seed,
+            &mut |part| self.report_progress(part),
+        )
     }
 
     /// Trains the model that a controller uses on a recording of the simulated machine. `date`
@@ -504,17 +515,7 @@ impl<'a> Setup<'a> {
                 Model::of_axes(&recordings.joined(), &trained, origin)
             }
             IdentifierKind::Contour => {
-                let excitation = Excitation {
-                    feed_period_s,
-                    ..Excitation::general()
-                };
-                let (recording, trained) = recorded_and_trained::<N>(
-                    self.machine,
-                    &excitation,
-                    &Training::default(),
-                    seed,
-                    &mut |part| self.report_progress(part),
-                );
+                let (recording, trained) = self.train_contour::<N>(feed_period_s);
                 Model::of_contour(&recording, &trained, self.response_s::<N>(), origin)
             }
         })
