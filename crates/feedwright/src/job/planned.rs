@@ -1,4 +1,4 @@
-//! What all cuts of a job share: the machine as it is planned, the paths and the circles.
+//! The plan that all cuts of a job share: the machine with its limits, the paths and the circles.
 
 use feedwright_control::Controller;
 use feedwright_gcode::canon::{Canon, MotionKind};
@@ -48,6 +48,19 @@ pub(super) fn with_feeds(
     })
 }
 
+/// Reads the path of a program anew.
+type ProgramSteps<'s> = Box<dyn FnMut() -> Result<Steps<'s>, ReadError> + 's>;
+
+/// Search for a plan: machine, tolerance in um, path, controller and its laps.
+type PlanSearch<'s, const N: usize, P> = fn(
+    &Machine,
+    f64,
+    ProgramSteps<'s>,
+    &mut dyn Controller<N>,
+    u32,
+    &dyn Watch,
+) -> Result<P, FastestError>;
+
 impl Job {
     /// Plans the cuts.
     pub(super) fn plan<const N: usize>(&self, watch: &dyn Watch) -> Result<JobPlan, JobError>
@@ -86,17 +99,7 @@ impl Job {
             return Ok(None);
         };
         watch.begin("planning the least time", 1);
-        let mut controller = self.own_controller::<N>()?;
-        let steps = || Ok(path_steps(self.steps()?));
-        let found = fastest(
-            &self.machine,
-            tolerance_um,
-            steps,
-            &mut *controller,
-            self.controller.laps,
-            watch,
-        );
-        found.map(Some).map_err(|error| self.of_search(error))
+        self.search(tolerance_um, watch, fastest::<N>).map(Some)
     }
 
     /// The plan whose path uses what the machine leaves of the tolerance, where the machine is
@@ -115,9 +118,22 @@ impl Job {
             return Ok(None);
         };
         watch.begin("looking for the tolerance of the path", 1);
+        self.search(tolerance_um, watch, plan_within::<N>)
+    }
+
+    /// Searches for a plan of the program with a controller of its own.
+    fn search<'s, const N: usize, P>(
+        &'s self,
+        tolerance_um: f64,
+        watch: &dyn Watch,
+        search: PlanSearch<'s, N, P>,
+    ) -> Result<P, JobError>
+    where
+        Entry: Make<N>,
+    {
         let mut controller = self.own_controller::<N>()?;
-        let steps = || Ok(path_steps(self.steps()?));
-        let found = plan_within(
+        let steps: ProgramSteps<'s> = Box::new(|| Ok(path_steps(self.steps()?)));
+        let found = search(
             &self.machine,
             tolerance_um,
             steps,
@@ -125,7 +141,13 @@ impl Job {
             self.controller.laps,
             watch,
         );
-        found.map_err(|error| self.of_search(error))
+        found.map_err(|error| match error {
+            FastestError::Run(error) => JobError::of_run(&self.program, error),
+            error => JobError::Fastest {
+                part: self.program.name(),
+                error,
+            },
+        })
     }
 
     /// The requested controller, for a search beside the cut.
@@ -138,16 +160,6 @@ impl Job {
             Some(model) => self.controller.make_with::<N>(setup, model)?,
             None => Make::<N>::make(self.controller, &mut setup),
         })
-    }
-
-    fn of_search(&self, error: FastestError) -> JobError {
-        match error {
-            FastestError::Run(error) => JobError::of_run(&self.program, error),
-            error => JobError::Fastest {
-                part: self.program.name(),
-                error,
-            },
-        }
     }
 
     /// The full circles of the program that errors are measured to.
