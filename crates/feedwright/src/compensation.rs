@@ -56,7 +56,7 @@ impl GeometryChoice {
     /// positions, mm. With a geometry file, it is where the tool of the machine is, too.
     ///
     /// # Errors
-    /// As `Self::on_any_part`, and a geometry that was not measured where the part is.
+    /// Fails as `Self::on_any_part` does; also if the geometry was not measured where the part is.
     pub(crate) fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
         let compensating = self.on_any_part(machine)?;
         if let Self::File(file) | Self::InProgram(file) = self {

@@ -143,7 +143,7 @@ impl OutputFile {
     /// Writes a file, if it is wanted.
     ///
     /// # Errors
-    /// What `write` says, with the name of the file.
+    /// Fails if `write` does; the error names the file.
     pub fn filled(
         file: Option<Self>,
         write: impl FnOnce(&mut Self) -> io::Result<()>,
@@ -164,7 +164,7 @@ impl OutputFile {
     /// all.
     ///
     /// # Errors
-    /// What the operating system says, such as a full disk.
+    /// Fails if the operating system refuses it, for example because the disk is full.
     pub fn sync(&mut self) -> Result<(), OutputError> {
         self.write_rest()?;
         let Named {

@@ -258,7 +258,7 @@ pub fn recorded_machine(
 /// same log gives the same machines.
 ///
 /// # Errors
-/// As [`recorded_machine`].
+/// Fails as [`recorded_machine`] does.
 fn fitting_machines(
     machine: &Machine,
     axes: usize,
@@ -281,7 +281,7 @@ fn fitting_machines(
 /// becomes the date in the model.
 ///
 /// # Errors
-/// As [`recorded_machine`].
+/// Fails as [`recorded_machine`] does.
 pub fn built_in_lines(
     machine: &Machine,
     axes: usize,

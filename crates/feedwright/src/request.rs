@@ -306,7 +306,7 @@ impl JobRequest {
         let recorded = both
             .into_iter()
             .filter_map(|entry| Some((entry, table.recorded(&machine, entry)?)));
-        choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
+        choices.take_recorded(recorded);
         let mut job = Job::new(self.program(), machine);
         job.machine_file = self.machine_file();
         job.compensation = self.compensation()?;

@@ -1,4 +1,4 @@
-//! What several commands print of a corrected program.
+//! Remarks on a corrected program that several commands print.
 
 use std::io::{self, Write};
 

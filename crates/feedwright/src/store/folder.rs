@@ -68,7 +68,8 @@ impl Store {
     /// Keeps a result. It is on the disk when this returns.
     ///
     /// # Errors
-    /// What the operating system says, such as a full disk; nothing is left behind.
+    /// Fails if the operating system refuses it, for example because the disk is full. Nothing is left
+    /// behind then.
     pub fn put(&self, key: &str, result: &impl Serialize) -> Result<(), OutputError> {
         let path = self.path(key);
         let text = text_of(result).map_err(|error| OutputError::from_io(error.into(), &path))?;

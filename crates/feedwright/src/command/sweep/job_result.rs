@@ -94,7 +94,8 @@ impl JobRequest {
     /// Returns the result: the figures that `run --json` writes, or the error of the job.
     ///
     /// # Errors
-    /// What does not follow from the job: a file that cannot be read, or a cancellation.
+    /// Fails where the error does not follow from the job: if a file cannot be read, or if the work is
+    /// canceled.
     pub(super) fn result(&self, address: &str, watch: &dyn Watch) -> Result<Value> {
         let mut result = match self.cut(&Unwatched(watch)) {
             Ok(result) => result,
