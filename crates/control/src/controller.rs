@@ -40,6 +40,8 @@ pub struct OffsetBounds {
     pub largest_mm: f64,
     /// Largest rate of change of the offset, mm/s.
     pub fastest_mm_s: f64,
+    /// Largest acceleration of a command, the path included, mm/s2; the smallest of all axes.
+    pub acceleration_mm_s2: f64,
 }
 
 impl OffsetBounds {
@@ -47,6 +49,7 @@ impl OffsetBounds {
     pub const NONE: Self = Self {
         largest_mm: f64::INFINITY,
         fastest_mm_s: f64::INFINITY,
+        acceleration_mm_s2: f64::INFINITY,
     };
 }
 

@@ -22,7 +22,7 @@
 //! | `supervisor/trial.rs` | does a correction without a model of the axes help? | commands a smaller share |
 //! | `supervisor/fade.rs` | how does an offset return to the path? | |
 //! | `supervisor/bounds.rs` | is a command permitted? | it is held to the bound |
-//! | `supervisor/dose.rs` | does an offset fit into [`Bounds::engaged_mm_s2`]? | commands a smaller part of it |
+//! | `supervisor/dose.rs` | does an offset fit into [`Bounds::command_mm_s2`]? | commands a smaller part of it |
 //! | `supervisor/engagement.rs` | is the correction engaged? | waits for 0.1 s of good motion, longer after each fault |
 //!
 //! A command that is not a number disengages at once.
@@ -58,7 +58,7 @@ mod dose;
 pub(crate) mod engagement;
 
 use crate::command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
-use crate::vector::{add_scaled, sub};
+use crate::vector::add_scaled;
 use crate::window::Window;
 use benefit::Benefit;
 pub use bounds::Bounds;
@@ -76,21 +76,25 @@ const NO_ERROR_MM2: f64 = 4e-6;
 /// The supervisor and its state between decisions.
 #[derive(Debug, Clone)]
 pub(crate) struct Supervisor<const N: usize> {
-    bounds: Bounds,
+    bounds: Bounds<N>,
     rate: f64,
     predictions: Predictions,
     benefit: Benefit<N>,
     engagement: Engagement,
     /// Commanded part of an offset that acts at once.
-    dose: Dose<N>,
+    dose: Dose,
     /// True if a correction is wanted at all.
     allowed: bool,
     held: bool,
+    /// True if the acceleration of the axes keeps the command from the due offset.
+    is_cut_off: bool,
+    /// Acceleration of the last command, mm/s2.
+    last_mm_s2: [f64; N],
 }
 
 impl<const N: usize> Supervisor<N> {
     /// Creates a supervisor at the start of a program.
-    pub(crate) fn new(bounds: Bounds) -> Self {
+    pub(crate) fn new(bounds: Bounds<N>) -> Self {
         Self {
             bounds,
             rate: 1.0,
@@ -100,16 +104,18 @@ impl<const N: usize> Supervisor<N> {
             dose: Dose::ALL,
             allowed: true,
             held: false,
+            is_cut_off: false,
+            last_mm_s2: [0.0; N],
         }
     }
 
     /// Returns the bounds of the command.
-    pub(crate) fn bounds(&self) -> &Bounds {
+    pub(crate) fn bounds(&self) -> &Bounds<N> {
         &self.bounds
     }
 
     /// Changes the bounds of the commands from the next decision on.
-    pub(crate) fn hold_to(&mut self, bounds: Bounds) {
+    pub(crate) fn hold_to(&mut self, bounds: Bounds<N>) {
         self.bounds = bounds;
     }
 
@@ -175,7 +181,6 @@ impl<const N: usize> Supervisor<N> {
                         self.bounds.fade_mm_s2,
                     );
                 }
-                self.dose.learn(report.learned);
                 self.at_once(window, &wanted, state, is_known)
             }
             State::Engaged => wanted,
@@ -185,8 +190,9 @@ impl<const N: usize> Supervisor<N> {
         let command = self
             .bounds
             .hold(window, asked, self.rate, report.acts_at_once);
-        self.held = state == State::Engaged && (command != asked || self.dose.is_reduced());
+        self.held = state == State::Engaged && (command != asked || self.is_cut_off);
         self.rate = command.rate;
+        self.last_mm_s2 = Bounds::commanded_mm_s2(window, command.offset_mm);
         command
     }
 
@@ -211,15 +217,15 @@ impl<const N: usize> Supervisor<N> {
             State::Fading => {
                 let faded_mm = self.faded_mm(window);
                 let due_mm = self.dose.of(wanted.offset_mm, false, period_s);
-                if is_known && self.bounds.engaged_mm_s2 < f64::INFINITY {
+                if is_known && self.bounds.limits_acceleration() {
                     core::array::from_fn(|axis| nearer(due_mm[axis], faded_mm[axis]))
                 } else {
                     faded_mm
                 }
             }
         };
-        let offset_mm = self.bounds.accelerated_mm(window, due_mm);
-        self.dose.take_in(sub(due_mm, offset_mm), period_s);
+        let offset_mm = self.bounds.accelerated_mm(window, due_mm, self.last_mm_s2);
+        self.is_cut_off = offset_mm != due_mm;
         Command {
             offset_mm,
             ..if is_in { *wanted } else { Command::AS_PLANNED }
@@ -272,7 +278,7 @@ impl<const N: usize> Supervisor<N> {
     /// continue at the speed of that step.
     fn faded_mm(&self, window: &Window<'_, N>) -> [f64; N] {
         let mut speed_mm_s = window.offset_mm_s;
-        if self.bounds.engaged_mm_s2 == f64::INFINITY {
+        if !self.bounds.limits_acceleration() {
             let axes = speed_mm_s.iter_mut().zip(window.offset_mm);
             axes.for_each(|(speed, offset_mm)| {
                 *speed = fade::begins_mm_s(offset_mm, *speed, self.bounds.fade_mm_s2);

@@ -85,7 +85,7 @@ pub struct Tick<const N: usize> {
 impl<const N: usize> Tick<N> {
     /// Creates the state at the start of a program, for a controller with this schedule and a servo
     /// period of `servo_s` seconds.
-    pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
+    pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds<N>) -> Self {
         let schedule = Schedule {
             servo_periods: schedule.servo_periods.max(1),
             ..schedule
@@ -194,7 +194,7 @@ impl<const N: usize> Tick<N> {
 
     /// Changes the bounds of the commands from the next decision on. The command reaches a smaller
     /// deviation within one step: the caller must not change it faster than the offset may move.
-    pub fn hold_to(&mut self, bounds: Bounds) {
+    pub fn hold_to(&mut self, bounds: Bounds<N>) {
         self.supervisor.hold_to(bounds);
     }
 

@@ -376,15 +376,10 @@ impl Machine {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Acceleration that the offset of a correction in the loop may have in every axis, mm/s2.
-    pub fn engaged_accel_mm_s2(&self) -> f64 {
-        let of_axis = |i| {
-            self.axis(i)
-                .correction_accel_mm_s2
-                .unwrap_or_else(|| self.accel_limit_mm_s2(i))
-        };
+    /// Acceleration that every axis may have in its command, mm/s2.
+    pub fn command_accel_mm_s2(&self) -> f64 {
         (0..self.axis_count())
-            .map(of_axis)
+            .map(|i| self.accel_limit_mm_s2(i))
             .fold(f64::INFINITY, f64::min)
     }
 

@@ -112,19 +112,21 @@ pub struct Run<'a> {
 /// The plan of one path within one set of limits, for all cuts along it: the first that comes to
 /// its end leaves it here.
 #[derive(Debug, Default)]
-pub struct PlanCache(Mutex<Option<KeptPlan>>);
+pub struct PlanCache([Mutex<Option<KeptPlan>>; 2]);
 
 impl PlanCache {
-    fn get(&self) -> Option<KeptPlan> {
-        self.0
+    fn get(&self, beside_correction: bool) -> Option<KeptPlan> {
+        self.0[usize::from(beside_correction)]
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
     }
 
-    fn keep(&self, plan: Option<KeptPlan>) {
+    fn keep(&self, beside_correction: bool, plan: Option<KeptPlan>) {
         if plan.is_some() {
-            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = plan;
+            *self.0[usize::from(beside_correction)]
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner) = plan;
         }
     }
 }
@@ -347,16 +349,25 @@ impl<'a> Run<'a> {
         Ok(result)
     }
 
-    fn constraints(&self) -> Constraints {
+    fn constraints(&self, beside_correction: bool) -> Constraints {
+        let constraints = if beside_correction {
+            self.machine.constraints_beside_correction()
+        } else {
+            Constraints::from(self.machine)
+        };
         Constraints {
             speed_caps: self.caps.cloned(),
-            ..Constraints::from(self.machine)
+            ..constraints
         }
     }
 
-    fn plan_of<'p>(&self, paths: LapPaths<'p>) -> Result<Plan<'p>, LimitsError> {
+    fn plan_of<'p>(
+        &self,
+        paths: LapPaths<'p>,
+        beside_correction: bool,
+    ) -> Result<Plan<'p>, LimitsError> {
         let (constraints, planner, plc) = (
-            self.constraints(),
+            self.constraints(beside_correction),
             self.stages.planner,
             Plc::from(self.machine),
         );
@@ -372,10 +383,12 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let plan = match self.memory.and_then(PlanCache::get) {
+        let beside_correction = self.within_drives && controller.report().acts_at_once;
+        let kept = |memory: &PlanCache| memory.get(beside_correction);
+        let plan = match self.memory.and_then(kept) {
             Some(kept) => Plan::again(&kept),
             None => {
-                let plan = self.plan_of(paths()?)?;
+                let plan = self.plan_of(paths()?, beside_correction)?;
                 if self.memory.is_some() {
                     plan.keeping()
                 } else {
@@ -401,7 +414,7 @@ impl<'a> Run<'a> {
             return Err(fault.clone().into());
         }
         if let Some(memory) = self.memory {
-            memory.keep(reference.into_kept());
+            memory.keep(beside_correction, reference.into_kept());
         }
         Ok(result)
     }

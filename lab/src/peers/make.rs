@@ -443,7 +443,10 @@ pub(super) fn lqg_preview<const N: usize>(
 ) -> Box<dyn Controller<N>> {
     let settings = LqgSettings {
         control_weight_s2: values(&CONTROL_WEIGHT),
-        bounds: setup.offset_bounds(),
+        bounds: OffsetBounds {
+            acceleration_mm_s2: f64::INFINITY,
+            ..setup.offset_bounds()
+        },
         ..LqgSettings::DEFAULT
     };
     Box::new(LqgIdentified::new(setup.truth::<N>(), settings))

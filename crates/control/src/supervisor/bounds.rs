@@ -37,7 +37,7 @@ const MAX_LOOKS: usize = 8;
 
 /// Bounds of the command.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub struct Bounds<const N: usize> {
     /// Distance of the command from the path, mm.
     pub deviation_mm: f64,
     /// Speed of the offset, mm/s.
@@ -50,11 +50,14 @@ pub struct Bounds {
     pub fade_mm_s2: f64,
     /// Acceleration of each axis of an engaged offset that acts at once, mm/s2.
     pub engaged_mm_s2: f64,
+    /// Acceleration of the command of each axis, the path included, where an offset acts at once,
+    /// mm/s2.
+    pub command_mm_s2: [f64; N],
     /// Fastest rate at which a controller may run the plan, as a part of its speed.
     pub fastest: f64,
 }
 
-impl Bounds {
+impl<const N: usize> Bounds<N> {
     /// Creates the bounds of a machine whose rapid motions run at `rapid_mm_s` and whose
     /// corrections accelerate by `correction_mm_s2`.
     pub fn new(deviation_mm: f64, rapid_mm_s: f64, correction_mm_s2: f64) -> Self {
@@ -66,33 +69,58 @@ impl Bounds {
             acceleration_mm_s2,
             fade_mm_s2,
             engaged_mm_s2: f64::INFINITY,
+            command_mm_s2: [f64::INFINITY; N],
             fastest: FASTEST,
         }
     }
 
-    /// Returns the next step toward a due offset within the acceleration that the machine's owner
-    /// allows: as fast as it can still be braked there. A step within this acceleration is followed
-    /// to the bit.
-    pub(super) fn accelerated_mm<const N: usize>(
+    /// Returns the next step toward a due offset with which the command of each axis stays within
+    /// its acceleration, and changes it by no more than the limit from the last one, `last_mm_s2`:
+    /// as fast as it can still be braked there. A step within these bounds is followed to the bit.
+    /// Where the path itself is beyond them, the offset keeps its speed.
+    pub(super) fn accelerated_mm(
         &self,
         window: &Window<'_, N>,
         due_mm: [f64; N],
+        last_mm_s2: [f64; N],
     ) -> [f64; N] {
         let period_s = window.feed_period_s;
-        let most_mm_s = self.engaged_mm_s2 * period_s;
-        let mut offset_mm = due_mm;
-        let from = window.offset_mm.into_iter().zip(window.offset_mm_s);
-        for (offset_mm, (from_mm, from_mm_s)) in offset_mm.iter_mut().zip(from) {
-            let way_mm = *offset_mm - from_mm;
-            if (way_mm / period_s - from_mm_s).abs() > most_mm_s {
-                let closing_mm_s = libm::sqrt(fade::MARGIN * self.engaged_mm_s2 * way_mm.abs())
+        let planned_mm_s2 = planned_mm_s2(window);
+        core::array::from_fn(|axis| {
+            let (due_mm, limit_mm_s2) = (due_mm[axis], self.command_mm_s2[axis]);
+            let (from_mm, from_mm_s) = (window.offset_mm[axis], window.offset_mm_s[axis]);
+            let offset_mm_s2 = self.engaged_mm_s2.min(limit_mm_s2);
+            let room_mm_s = |way: f64| {
+                let room_mm_s2 = limit_mm_s2 + (way * last_mm_s2[axis]).min(0.0);
+                let left_mm_s2 = room_mm_s2 - way * planned_mm_s2[axis];
+                period_s * left_mm_s2.max(0.0).min(offset_mm_s2)
+            };
+            let [least_mm_s, most_mm_s] = [-room_mm_s(-1.0), room_mm_s(1.0)];
+            let way_mm = due_mm - from_mm;
+            let due_mm_s = way_mm / period_s - from_mm_s;
+            if due_mm_s < least_mm_s || due_mm_s > most_mm_s {
+                let closing_mm_s = libm::sqrt(fade::MARGIN * offset_mm_s2 * way_mm.abs())
                     .min(way_mm.abs() / period_s);
                 let change_mm_s = libm::copysign(closing_mm_s, way_mm) - from_mm_s;
-                *offset_mm =
-                    from_mm + period_s * (from_mm_s + bounded(change_mm_s, -most_mm_s, most_mm_s));
+                from_mm + period_s * (from_mm_s + bounded(change_mm_s, least_mm_s, most_mm_s))
+            } else {
+                due_mm
             }
-        }
-        offset_mm
+        })
+    }
+
+    /// Returns the acceleration of a command with this offset, mm/s2.
+    pub(super) fn commanded_mm_s2(window: &Window<'_, N>, offset_mm: [f64; N]) -> [f64; N] {
+        let period_s = window.feed_period_s;
+        let speed_mm_s = scale(1.0 / period_s, sub(offset_mm, window.offset_mm));
+        let change_mm_s = sub(speed_mm_s, window.offset_mm_s);
+        add_scaled(planned_mm_s2(window), 1.0 / period_s, change_mm_s)
+    }
+
+    /// Returns true if the acceleration of a command is limited.
+    pub(super) fn limits_acceleration(&self) -> bool {
+        let limits_mm_s2 = self.command_mm_s2.into_iter();
+        limits_mm_s2.fold(self.engaged_mm_s2, f64::min) < f64::INFINITY
     }
 
     /// Limits the feedrate to `percent` above the planned one.
@@ -106,7 +134,7 @@ impl Bounds {
     /// Returns the command within the bounds; `last_rate` is the rate until now. An offset that
     /// acts at once refers to the present point of the path, any other to the point of the path at
     /// the end of the feed period.
-    pub(super) fn hold<const N: usize>(
+    pub(super) fn hold(
         &self,
         window: &Window<'_, N>,
         wanted: Command<N>,
@@ -170,12 +198,7 @@ impl Bounds {
     /// along a line and the path may curve: the command may be too far from the path on the way
     /// even if it is not at either end. The end then moves toward the path, within the permitted
     /// step.
-    fn near_on_the_way<const N: usize>(
-        &self,
-        window: &Window<'_, N>,
-        ahead_s: f64,
-        end_mm: [f64; N],
-    ) -> [f64; N] {
+    fn near_on_the_way(&self, window: &Window<'_, N>, ahead_s: f64, end_mm: [f64; N]) -> [f64; N] {
         let mut near_mm = end_mm;
         for part in ON_THE_WAY {
             let there_mm = add_scaled(window.offset_mm, part, sub(near_mm, window.offset_mm));
@@ -197,6 +220,15 @@ impl Bounds {
         let near_mm = add_scaled(window.offset_mm, 1.0, step_mm);
         near_the_path(window, ahead_s, near_mm, self.deviation_mm)
     }
+}
+
+/// Returns the acceleration of the path in the last two servo periods, mm/s2.
+fn planned_mm_s2<const N: usize>(window: &Window<'_, N>) -> [f64; N] {
+    let servo_s = window.servo_s();
+    let [here_mm, last_mm, before_mm] =
+        [0.0, -servo_s, -2.0 * servo_s].map(|after_s| window.at(after_s).position_mm);
+    let change_mm = sub(sub(here_mm, last_mm), sub(last_mm, before_mm));
+    scale(1.0 / (servo_s * servo_s), change_mm)
 }
 
 /// Returns the offset `ahead_s` from now in plan time, moved back toward the path where the command

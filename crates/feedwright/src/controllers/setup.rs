@@ -383,6 +383,7 @@ impl<'a> Setup<'a> {
         OffsetBounds {
             largest_mm: limits.max_deviation_mm,
             fastest_mm_s: limits.rapid_mm_s,
+            acceleration_mm_s2: self.machine.command_accel_mm_s2(),
         }
     }
 

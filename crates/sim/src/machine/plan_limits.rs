@@ -109,6 +109,29 @@ impl From<&Machine> for Constraints {
     }
 }
 
+/// Part of the acceleration of an axis that a plan takes beside a correction in the loop. The star
+/// takes 0.3 % longer.
+const PLANNED_SHARE: f64 = 0.85;
+
+impl Machine {
+    /// Returns the inputs of a plan that leaves a part of the acceleration of each axis to a
+    /// correction in the loop.
+    pub(crate) fn constraints_beside_correction(&self) -> Constraints {
+        let mut constraints = Constraints::from(self);
+        for (i, axis) in constraints.axes.iter_mut().enumerate() {
+            axis.accel_mm_s2 = axis
+                .accel_mm_s2
+                .min(PLANNED_SHARE * self.accel_limit_mm_s2(i));
+        }
+        let path = &mut constraints.path;
+        let curve_mm_s2 = libm::hypot(path.tangential_accel_mm_s2, path.normal_accel_mm_s2);
+        let share = (PLANNED_SHARE * self.command_accel_mm_s2() / curve_mm_s2).min(1.0);
+        path.tangential_accel_mm_s2 *= share;
+        path.normal_accel_mm_s2 *= share;
+        constraints
+    }
+}
+
 impl From<&Machine> for Plc {
     fn from(machine: &Machine) -> Self {
         Self::new(machine.plc).with_events(&machine.plc_events)
