@@ -255,7 +255,7 @@ impl<const N: usize> Preview<N> {
     /// time is a multiple of the step except for rounding, which must not lead to the grid point
     /// before.
     #[inline]
-    fn place(&self, tau_s: f64) -> (u64, f64) {
+    pub(crate) fn place(&self, tau_s: f64) -> (u64, f64) {
         let place = (tau_s / self.step_s).max(0.0);
         let nearest = libm::round(place);
         if (place - nearest).abs() < AT_A_POINT {

@@ -31,7 +31,9 @@
 //! | `lqg_identified/control_weight.rs` | control weight and bounds of the offset |
 //! | `lqg_identified/riccati.rs` | the gains |
 //! | `lqg_identified/linear.rs` | the linear part of an axis and of its loads |
+//! | `lqg_identified/command_noise.rs` | noise of the command |
 //! | `lqg_identified/command_weight.rs` | a regulator whose command is quiet |
+//! | `lqg_identified/shaped.rs` | the reference, smoothed where its ideal command needs too much acceleration |
 //! | `lqg_identified/screw.rs` | position of the motor on a compliant ball screw |
 //! | `lqg_identified/approach.rs` | the way back of a tool that is far off, within the available control authority |
 //! | `lqg_identified/feasible.rs` | check of the torque for the reference ahead |
@@ -51,6 +53,7 @@ mod control_weight;
 mod riccati;
 mod linear;
 mod command_weight;
+mod command_noise;
 mod screw;
 mod approach;
 mod feasible;
@@ -58,6 +61,7 @@ mod gain_table;
 mod estimate;
 mod learning;
 mod regulated_axis;
+mod shaped;
 
 use super::feedforward::preview;
 use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
@@ -70,9 +74,10 @@ use crate::supervisor::first_use::FirstUse;
 use crate::supervisor::one_step::{OneStep, RUN_S};
 use crate::supervisor::validity::{ModelWeights, Shown, Validity};
 use crate::vector::{add_scaled, norm, scale, sub};
-use crate::window::Window;
+use crate::window::{PREVIEW_KNOTS, Window};
 use feasible::Feasibility;
 use regulated_axis::AxisLqg;
+use shaped::Shaped;
 
 pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings};
 pub use regulated_axis::LqgGains;
@@ -103,25 +108,42 @@ pub struct LqgIdentified<const N: usize> {
     asked_mm: [f64; N],
     /// Time since the position was lost, s.
     lost_s: f64,
+    /// The smoothed reference, the acceleration that its ideal command may take, mm/s2, and the time
+    /// from now up to which it is needed, s.
+    shaped: Shaped<N>,
+    limit_mm_s2: f64,
+    needed_s: f64,
 }
 
 impl<const N: usize> LqgIdentified<N> {
     /// Creates the controller of a machine with these models of its axes.
     pub fn new(known: [AxisModel; N], settings: LqgSettings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
+        let servo_s = known.first().map_or(1.0, |axis| axis.periods.servo_s);
         let preview_knots =
             |axis: &AxisLqg| preview(axis.ahead_s(), axis.axis_model().periods.servo_s);
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
         let unforeseen_mm2 = axes.iter().map(AxisLqg::unforeseen_mm2).sum();
         let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
+        let needed_s = axes
+            .iter()
+            .map(|axis| axis.looks_ahead_s() - lag_s)
+            .fold(0.0, f64::max);
+        // The cast saturates where the float is too large or NaN.
+        let shaped = libm::ceil(needed_s / servo_s) as u32 + shaped::BEHIND as u32;
         Self {
             lag_s,
-            preview: longest + DIFFERENCES as u32,
+            preview: (longest + DIFFERENCES as u32)
+                .max(shaped)
+                .min(PREVIEW_KNOTS as u32),
             validity: settings.learns.then(|| Validity::unknown(unforeseen_mm2)),
             first_use: (!settings.is_known).then(|| FirstUse::new(unforeseen_mm2)),
             feasibility: Feasibility::FOLLOWED,
             asked_mm: [0.0; N],
             lost_s: 0.0,
+            shaped: Shaped::new(known),
+            limit_mm_s2: settings.bounds.acceleration_mm_s2,
+            needed_s,
             axes,
         }
     }
@@ -175,6 +197,7 @@ impl<const N: usize> LqgIdentified<N> {
     /// Forgets the results on the models and on the reference.
     fn know_nothing(&mut self) {
         self.validity.iter_mut().for_each(Validity::forget);
+        self.shaped.forget();
         (self.feasibility, self.asked_mm, self.lost_s) = (Feasibility::FOLLOWED, [0.0; N], 0.0);
     }
 
@@ -274,6 +297,7 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
     }
 
     fn hold_to(&mut self, bounds: OffsetBounds) {
+        self.limit_mm_s2 = bounds.acceleration_mm_s2;
         self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
     }
 
@@ -390,12 +414,14 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
             .as_ref()
             .map_or(ModelWeights::FULLY, Validity::model_weights);
         self.look_ahead(window);
+        self.shaped.take_in(window, self.limit_mm_s2, self.needed_s);
         let open = self.feasibility.open();
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
             // The i-th element exists. `get` avoids a panic that the compiler would leave in.
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
             let late_s = axis.command_delay_s();
-            let at_mm = |after_s: f64| of_axis(window.at(after_s + late_s - lag_s).position_mm);
+            let shaped = &self.shaped;
+            let at_mm = |after_s: f64| of_axis(shaped.at_mm(window, after_s + late_s - lag_s));
             *offset_mm = axis.offset_mm(of_axis(here_mm), model_weights, open, at_mm);
         }
         self.asked_mm = offset_mm;

@@ -26,8 +26,9 @@
 use crate::axis::numbers::Part;
 use crate::axis::{AxisModel, Parameters};
 
+use super::command_noise::second_difference;
 use super::linear::{LinearAxis, STATES};
-use super::riccati::{PeriodCost, StateMatrix, inner, regulator};
+use super::riccati::{PeriodCost, StateMatrix, applied, inner, regulator};
 
 /// Number of states of the regulator: the states of the axis, and then o1 and o2, rad.
 pub(super) const REGULATED: usize = STATES + 2;
@@ -36,8 +37,6 @@ const ANGLE: usize = 0;
 const SPEED: usize = 1;
 /// Leftmost permitted real pole of the loop of a learned model.
 const LEFTMOST_POLE: f64 = -0.25;
-/// Difference up to which commands are equal, rad: rounding.
-const SAME_RAD: f64 = 1e-9;
 /// Step of the inertia in the search, as a part of it, and the number of steps.
 const INERTIA_STEP: f64 = 0.02;
 const INERTIA_STEPS: u32 = 35;
@@ -120,14 +119,12 @@ impl CommandHistory {
         ]);
     }
 
-    /// Takes in a sent command. A command that was not decided counts as ideal: the regulator must
-    /// not compensate smoothly for a bound that changed it.
+    /// Takes in a sent command, which a bound may have changed. Without a decision it counts as
+    /// ideal.
     pub(super) fn sent(&mut self, command_rad: f64) {
         let off_rad = match self.decided_rad.take() {
-            Some([decided_rad, off_rad]) if (command_rad - decided_rad).abs() <= SAME_RAD => {
-                off_rad
-            }
-            _ => 0.0,
+            Some([decided_rad, off_rad]) => off_rad + (command_rad - decided_rad),
+            None => 0.0,
         };
         let [last_rad, _] = self.off_rad;
         self.off_rad = [off_rad, last_rad];
@@ -181,6 +178,27 @@ fn weighted(
     };
     let of_offset = regulator(&states, &input, &cost);
     core::array::from_fn(|i| k0 * of_offset[i] - row[i])
+}
+
+/// Returns the RMS of the second difference of the command with these gains, rad. Innovations with
+/// this variance, rad^2, enter the states of the axis by `filter`, and `late` servo periods pass
+/// until the command acts.
+pub(super) fn noise_rad(
+    axis: &LinearAxis,
+    axis_model: &CommandModel,
+    gains: &[f64; REGULATED],
+    (filter, variance_rad2, late): ([f64; STATES], f64, u32),
+) -> f64 {
+    let (states, input, _) = axis.sampled();
+    let enters = (0..late).fold(filter, |enters, _| applied(&states, &enters));
+    let (states, input, k0, row) = commanded(&states, &input, axis_model);
+    let by_offset: [f64; REGULATED] = core::array::from_fn(|i| (gains[i] + row[i]) / k0);
+    let closed =
+        core::array::from_fn(|i| core::array::from_fn(|j| states[i][j] - input[i] * by_offset[j]));
+    let mut difference = by_offset.map(|gain| -gain);
+    difference[STATES] -= 2.0;
+    difference[STATES + 1] += 1.0;
+    second_difference(&closed, &widened(&enters), &difference, variance_rad2)
 }
 
 /// Returns the smallest difference of the inertia, as a part of it, at which the loop of these
@@ -369,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_was_not_decided_on_counts_as_ideal() {
+    fn a_command_that_a_bound_changed_counts_as_it_was_sent() {
         let known = with_feedforward();
         let (axis_model, mut history) = (CommandModel::new(&known), CommandHistory::IDEAL);
         let mut send = |sent_rad: f64| {
@@ -387,7 +405,11 @@ mod tests {
             (last_rad - 0.01).abs() < 1e-12 && before_rad == 0.0,
             "{last_rad} {before_rad}"
         );
-        assert_eq!(send(2.999), [0.0, last_rad]);
+        let [changed_rad, before_rad] = send(2.999);
+        assert!(
+            (changed_rad - 0.009).abs() < 1e-12 && before_rad == last_rad,
+            "{changed_rad} {before_rad}"
+        );
     }
 
     #[test]

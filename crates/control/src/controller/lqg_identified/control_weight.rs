@@ -1,6 +1,6 @@
 //! Settings of the controller.
 
-use crate::axis::Parameters;
+use crate::axis::{AxisModel, Parameters};
 use crate::controller::OffsetBounds;
 use crate::controller::row::Parameter;
 
@@ -32,10 +32,17 @@ pub const IDENTIFIED_WEIGHT: Parameter = Parameter::number(
     "weight of the reference speed against the error, in servo periods squared, near the reference: a high one leaves the error",
 )
 .of_unit("servo periods squared");
-/// Weight of the second difference of the command with an identified model: the fourth power of
-/// half a servo period, in servo periods. With it the command for a plate in inches alternates in 9
-/// servo periods on `workshop`, and in 130 on `stiff`; without it in 11,292 and 1,523.
-const COMMAND_WEIGHT: f64 = 0.0625;
+/// Shortest time constant Ta of the weight of the second difference of the command, in servo
+/// periods, with an identified model; the weight is its fourth power. The command alternates with
+/// less: in 11,292 servo periods of a plate in inches on `workshop`, in 9 with this.
+const LEAST_TIME: f64 = 0.5;
+/// Ratio of one time constant to the one before, and the number of them.
+const TIME_RATIO: f64 = core::f64::consts::SQRT_2;
+const TIMES: u32 = 10;
+/// RMS acceleration of the command at constant speed, part of the smallest limit of the axes.
+const NOISE_SHARE: f64 = 0.1;
+/// The same as a torque, part of the torque limit, where no acceleration is stated.
+const NOISE_TORQUE: f64 = 0.04;
 /// Shortest time constant of the regulator of a compliant screw, in radians of its resonance, where
 /// the model may be wrong: the model of the regulator has no backlash. On `soft`, 2 leaves 0.6 of
 /// the error that 0 leaves on star, circle and square, and 0.1 on pocket.
@@ -56,11 +63,35 @@ impl LqgSettings {
     pub fn identified(control_weight: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
         Self {
             control_weight_s2: control_weight * servo_s * servo_s,
-            command_weight: COMMAND_WEIGHT,
+            command_weight: LEAST_TIME * LEAST_TIME * LEAST_TIME * LEAST_TIME,
             bounds,
             learns: true,
             is_known: true,
         }
+    }
+
+    /// Returns the least weight of the second difference of the command, from the one of these
+    /// settings on, whose noise is within the budget of an axis. `noise_rad` returns the RMS of the
+    /// second difference by its weight.
+    pub(super) fn quiet_command_weight(
+        &self,
+        axis_model: &AxisModel,
+        noise_rad: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let (axis, servo_s) = (&axis_model.parameters, axis_model.periods.servo_s);
+        let by_torque_rad_s2 = NOISE_TORQUE * axis.torque_limit_nm / axis.inertia_kg_m2;
+        let by_limit_rad_s2 = NOISE_SHARE * self.bounds.acceleration_mm_s2 * axis.rad_per_mm;
+        let most_rad = servo_s * servo_s * by_torque_rad_s2.min(by_limit_rad_s2);
+        let ratio = TIME_RATIO * TIME_RATIO * TIME_RATIO * TIME_RATIO;
+        let mut weight = self.command_weight;
+        for _ in 1..TIMES {
+            // Also true where it is no number.
+            if !(noise_rad(weight) > most_rad) {
+                break;
+            }
+            weight *= ratio;
+        }
+        weight
     }
 
     /// Returns the control weight near the reference, for an axis with its screw.

@@ -218,12 +218,17 @@ impl AxisLqg {
         let model = FilterModel::new(axis_model, settings.learns);
         let regulated = command_weight::regulated_axis(&axis_model);
         let command_model = CommandModel::new(&axis_model);
-        let lowest = [
-            settings.lowest_control_weight_s2(&axis_model.parameters),
-            settings.command_weight,
-        ];
-        let regulator =
-            WeightedGains::new(lowest, command_weight::gains(&regulated, &command_model));
+        let control_weight_s2 = settings.lowest_control_weight_s2(&axis_model.parameters);
+        let gains = command_weight::gains(&regulated, &command_model);
+        let command_weight = if settings.command_weight > 0.0 {
+            settings.quiet_command_weight(&axis_model, |weight| {
+                let gains = gains([control_weight_s2, weight]);
+                command_weight::noise_rad(&regulated, &command_model, &gains, model.innovations())
+            })
+        } else {
+            0.0
+        };
+        let regulator = WeightedGains::new([control_weight_s2, command_weight], gains);
         let least_inertia = || command_weight::least_inertia(&axis_model, &regulator.near());
         Self {
             inverse: AxisInverse::new(axis_model),
@@ -270,6 +275,13 @@ impl AxisLqg {
     pub(super) fn ahead_s(&self) -> f64 {
         let twist_s = self.twist.map_or(0.0, |twist| twist.ahead_s());
         self.inverse.lag_s() + self.inverse.ahead_s() + twist_s
+    }
+
+    /// Returns the time after the present command up to which the axis evaluates the reference, s.
+    pub(super) fn looks_ahead_s(&self) -> f64 {
+        let twist_s = self.twist.map_or(0.0, |twist| twist.ahead_s());
+        let servo_s = self.model.axis_model.periods.servo_s;
+        self.inverse.ahead_s() + twist_s + self.command_delay_s() + super::DIFFERENCES * servo_s
     }
 
     /// Changes the bounds of the offsets.
