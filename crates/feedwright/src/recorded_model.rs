@@ -13,7 +13,6 @@ mod built_in;
 
 use std::path::Path;
 
-use feedwright_control::IdentifierKind;
 use feedwright_gcode::Program;
 use feedwright_ident::{
     AxisFacts, Columns, ExciteOptions, Log, Model, ModelVerdict, SERVO_MECHANICS,
@@ -147,50 +146,19 @@ impl FromLog {
     }
 }
 
-/// Log from which the controller of a job gets its model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModelOfLog {
-    /// Machine that records it: as its file has it, whatever limits the job plans with.
-    pub machine: Machine,
-    /// Date in the model file.
-    pub date: String,
-    /// Number of other machines that fit the log as well and are cut, too.
-    pub fitting: usize,
-}
-
-impl ModelOfLog {
-    /// Returns the model for a controller; `None` if the controller uses no model of the axes.
-    ///
-    /// # Errors
-    /// The model of an axis cannot be identified from the log, or the work is canceled.
-    pub(crate) fn model(
-        &self,
-        axes: usize,
-        (entry, choices): (&Entry, &Choices),
-        watch: &dyn Watch,
-    ) -> Result<Option<RecordedModel>, RecordedModelError> {
-        if entry.identifier != Some(IdentifierKind::Axes) {
-            return Ok(None);
-        }
-        let (machine, seed, date) = (&self.machine, choices.seed, self.date.clone());
-        let mut found = recorded_model(machine, axes, (entry, choices), date, watch)?;
-        if self.fitting > 0 {
-            found.fitting = fitting_machines(machine, axes, seed, self.fitting, watch)?;
-        }
-        Ok(Some(found))
-    }
-}
-
 /// Returns the model of the first two or three axes of a machine, for a controller that uses one.
 /// The machine cuts the program of `excite` uncorrected, and the model is identified from the log.
-/// `date` becomes the date in the model file.
+/// `date` becomes the date in the model file. `fitting` machines that fit the log about as well are
+/// with it.
 ///
-/// Fails if no model can be identified from the log, or if the work is canceled.
-fn recorded_model(
+/// # Errors
+/// No model can be identified from the log, or the work is canceled.
+pub(crate) fn recorded_model(
     machine: &Machine,
     axes: usize,
     (entry, choices): (&Entry, &Choices),
     date: String,
+    fitting: usize,
     watch: &dyn Watch,
 ) -> Result<RecordedModel, RecordedModelError> {
     let content = model_content(machine, axes, (entry, choices));
@@ -212,7 +180,10 @@ fn recorded_model(
     Ok(RecordedModel {
         model,
         warnings: from_log.warnings,
-        fitting: Vec::new(),
+        fitting: match fitting {
+            0 => Vec::new(),
+            number => fitting_machines(machine, axes, choices.seed, number, watch)?,
+        },
     })
 }
 
