@@ -27,6 +27,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 pub use json::write as write_json;
+pub(crate) use machine_text::identified_machine;
 pub use machine_text::machine_text;
 pub use page::{following as following_figure, write as write_page};
 pub use update::updated_text;

@@ -215,6 +215,19 @@ impl Machine {
         layout::machine(&document, Some(&base_document)).map_err(invalid)
     }
 
+    /// Returns the machine, whose axes were made of values, if a machine file may have them.
+    /// `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Every value of an axis that is out of its range, or does not suit the others.
+    pub fn checked(self, file: &str) -> Result<Self, MachineError> {
+        let faults = layout::faults_of_axes(&self);
+        if faults.is_empty() {
+            return Ok(self);
+        }
+        Err(FileError::invalid(&KIND, file, "", faults).into())
+    }
+
     /// The text of a machine file that reads as this machine, without a base.
     pub fn text(&self) -> String {
         let texts = [
