@@ -90,18 +90,18 @@ pub struct Job {
     pub choices: Choices,
     /// A model for the requested controller, in place of a training. One that is missing comes from
     /// a simulated log, or with `exact_settings` from a training on the machine.
-    pub model: Option<Model>,
+    pub(crate) model: Option<Model>,
     /// Machines that fit the recording of the model. Each is cut with the controller too, and the
     /// results are the band of the report.
     pub fitting: Vec<Machine>,
     /// The control, without feedback, that a corrected program is made for.
     pub target: Option<&'static TargetControl>,
     /// Plans the program with the planner of this control instead of the machine's planner.
-    pub planned_as: Option<&'static TargetControl>,
+    pub(crate) planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
-    pub reference: Option<Program>,
+    pub(crate) reference: Option<Program>,
     /// Log that a machine recorded while it cut the program, shown beside the predicted values.
-    pub log: Option<Arc<MeasuredLog>>,
+    pub(crate) log: Option<Arc<MeasuredLog>>,
     /// Settings of the reader.
     pub reader: feedwright_gcode::Settings,
 }
@@ -116,29 +116,29 @@ pub struct JobOutcome {
     /// Warnings of the reader.
     pub warnings: Vec<feedwright_gcode::Diagnostic>,
     /// Axes that the log of the model does not determine well enough, in words.
-    pub undetermined: Vec<String>,
+    pub(crate) undetermined: Vec<String>,
     /// Controllers that cut uncorrected, because nothing was identified that they could use.
     pub without_identification: Vec<CutsUncorrected>,
     /// Guesses about the log, and remarks on it.
-    pub log_findings: Vec<LogFinding>,
+    pub(crate) log_findings: Vec<LogFinding>,
     /// The model that the controller had at the end of the cut, if it was given one and this model
     /// was requested.
-    pub learned: Option<Model>,
+    pub(crate) learned: Option<Model>,
     /// The corrected program for another control, if one was requested; its run is the last.
-    pub exported: Option<CorrectOutcome>,
+    pub(crate) exported: Option<CorrectOutcome>,
     /// The plan of least time, if it was requested.
-    pub fastest: Option<FastestPlan>,
+    pub(crate) fastest: Option<FastestPlan>,
     /// Tolerance of the planned path, um, where it is a part of the tolerance of the tool.
-    pub path_um: Option<f64>,
+    pub(crate) path_um: Option<f64>,
     /// Respects in which the correction is worse than uncorrected; empty where it is compared with
     /// something else.
-    pub harm: Vec<Harm>,
+    pub(crate) harm: Vec<Harm>,
     /// True if the command of the controller may be used: it was cut to its end, does no harm, and
     /// asks no drive for twice its limit.
     pub is_of_use: bool,
     /// True if the last run was cut to its end and within the requested tolerance, if any, and a
     /// requested program is better than the original.
-    pub within_tolerance: bool,
+    pub(crate) within_tolerance: bool,
 }
 
 impl Job {

@@ -154,11 +154,11 @@ pub use report::figure::{
 };
 pub use report::harm::{CutErrors, ErrorChange, MAX_UM, RMS_UM, UNCUT_UM, harm};
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
-pub use report::text::{escaped, number};
+pub use report::text::escaped;
 pub use report::{
-    Assumptions, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, LimitBand, PageUnits,
-    ProgramLine, Report, ReportedRun, Role, Roundness, RunFacts, RunSummary, Series, Statistics,
-    TimelineEvent, write_html, write_html_data, write_html_in,
+    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, LimitBand, PageUnits, ProgramLine, Report,
+    ReportedRun, Role, Roundness, RunFacts, RunSummary, Series, Statistics, TimelineEvent,
+    write_html, write_html_data, write_html_in,
 };
 pub use request::JobRequest;
 pub use request::named::find_control;

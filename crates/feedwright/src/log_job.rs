@@ -49,13 +49,13 @@ pub struct LogJob {
 #[derive(Debug, Clone)]
 pub struct LogIdentified {
     /// The job.
-    pub job: LogJob,
+    pub(crate) job: LogJob,
     /// The log, or the windows of it that were used.
     pub log: Log,
     /// The identified machine.
     pub machine: FoundMachine,
     /// Number of samples in the whole log, if only windows of it were used.
-    pub of_samples: Option<usize>,
+    pub(crate) of_samples: Option<usize>,
 }
 
 /// Reasons why an identification fails.

@@ -88,9 +88,7 @@ mod pipeline;
 pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused};
 pub use geometry_file::least_squares::{RankedLeastSquares, f_exceeded};
 pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};
-pub use geometry_file::{
-    AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness,
-};
+pub use geometry_file::{AxisGeometry, GeometryFile, GeometryOrigin, MeasuredSquareness};
 pub use kinematics::joints_of;
 pub use known_geometry::CompensationError;
 #[doc(hidden)]

@@ -118,10 +118,10 @@ pub struct Transition {
     pub(crate) cause: Option<&'static str>,
     /// Measured value that was compared with the limit, um; `None` where nothing was compared.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub found_um: Option<f64>,
+    pub(crate) found_um: Option<f64>,
     /// Limit above which the value is a fault, um.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub limit_um: Option<f64>,
+    pub(crate) limit_um: Option<f64>,
 }
 
 /// Kind of change of the correction.

@@ -85,9 +85,9 @@ pub struct FoundSet {
     /// none where each was measured once.
     pub repeatability_um: Option<f64>,
     /// Factor tau by which its residuals contain less information than independent ones.
-    pub correlation: f64,
+    pub(crate) correlation: f64,
     /// Circular deviations of a ball bar, as it was read.
-    pub circularity: Option<Circularity>,
+    pub(crate) circularity: Option<Circularity>,
     /// Nuisances: name, value, unit.
     pub nuisances: Vec<(&'static str, f64, &'static str)>,
 }

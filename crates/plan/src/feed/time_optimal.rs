@@ -146,7 +146,7 @@ pub struct PlanCounts {
     /// Windows in whose place the motion went on along the one before.
     pub(crate) went_on: u64,
     /// Straight motions from rest to rest in place of a window.
-    pub straight: u64,
+    pub(crate) straight: u64,
     /// Newton steps of all solutions.
     pub(crate) iterations: u64,
 }
