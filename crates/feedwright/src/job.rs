@@ -116,18 +116,18 @@ pub struct JobOutcome {
     /// Warnings of the reader.
     pub warnings: Vec<feedwright_gcode::Diagnostic>,
     /// Axes that the log of the model does not determine well enough, in words.
-    pub(crate) undetermined: Vec<String>,
+    pub undetermined: Vec<String>,
     /// Controllers that cut uncorrected, because nothing was identified that they could use.
     pub without_identification: Vec<CutsUncorrected>,
     /// Guesses about the log, and remarks on it.
-    pub(crate) log_findings: Vec<LogFinding>,
+    pub log_findings: Vec<LogFinding>,
     /// The model that the controller had at the end of the cut, if it was given one and this model
     /// was requested.
-    pub(crate) learned: Option<Model>,
+    pub learned: Option<Model>,
     /// The corrected program for another control, if one was requested; its run is the last.
     pub(crate) exported: Option<CorrectOutcome>,
     /// The plan of least time, if it was requested.
-    pub(crate) fastest: Option<FastestPlan>,
+    pub fastest: Option<FastestPlan>,
     /// Tolerance of the planned path, um, where it is a part of the tolerance of the tool.
     pub(crate) path_um: Option<f64>,
     /// Respects in which the correction is worse than uncorrected; empty where it is compared with

@@ -19,8 +19,8 @@ use std::ops::Range;
 
 use feedwright_gcode::visible;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, Log, ModelTerm, ModelVerdict,
-    NotFound, NumberSource, identify_machine,
+    AxisFacts, Fitness, FoundMachine, GreyBoxOptions, Log, ModelTerm, ModelVerdict, NotFound,
+    NumberSource, identify_machine,
 };
 use feedwright_sim::{Cancelled, Machine, StageSteps, Watch, significant};
 use miette::Diagnostic;
@@ -80,26 +80,12 @@ impl LogJob {
     /// Fails if the model of an axis cannot be identified from the log, or if the work is canceled.
     pub fn run(self, log: Log, watch: &dyn Watch) -> Result<LogIdentified, LogJobError> {
         let (log, of_samples) = informative(log);
-        let records: Vec<AxisRecord<'_>> = log
-            .axes
-            .iter()
-            .map(|axis| AxisRecord {
-                name: &axis.name,
-                sample_s: log.sample_time_s,
-                stretches: &log.stretches,
-                command_mm: &axis.command_mm,
-                actual_mm: &axis.actual_mm,
-                step_mm: axis.step_mm,
-            })
-            .collect();
-        let torques: Vec<Option<&[f64]>> =
-            log.axes.iter().map(|axis| axis.torque.as_deref()).collect();
         let options = GreyBoxOptions {
             times_s: self.times_s.clone(),
             facts: self.facts_of(&log),
         };
         let mut steps = StageSteps::begin(watch, "identifying the axes");
-        let machine = identify_machine(&records, &torques, &log.time_s, &options, |part| {
+        let machine = identify_machine(&log, &options, |part| {
             steps.reach(part);
             !watch.is_cancelled()
         })?;

@@ -165,7 +165,7 @@ pub struct Advice {
     pub assumed: Option<FileAssumption>,
     /// Warnings of the reader.
     #[serde(skip)]
-    pub(crate) warnings: Vec<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Advice {

@@ -51,7 +51,7 @@ pub struct CorrectOutcome {
     pub(crate) dwell_s: f64,
     /// True if a finished piece could not be kept for another run.
     #[serde(skip)]
-    pub(crate) is_lost: bool,
+    pub is_lost: bool,
     /// Warnings of the reader.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,
