@@ -43,11 +43,11 @@
 //! | One servo period | [`Tick`], [`Setpoint`] |
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
-//! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
+//! | Contour error | [`ContourError`], [`Estimator`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`], [`SelfReport`] |
 //! | Making one | [`AnyController`], [`MemberName`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
-//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`], [`FaultEvidence`] |
+//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`Number`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`TrainedModel`], [`ModelBlock`] |
 //!

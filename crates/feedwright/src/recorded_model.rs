@@ -75,7 +75,7 @@ pub enum RecordedModelError {
     Cancelled(#[from] Cancelled),
 }
 
-/// What follows from a log: a machine or a model, and the axes in it that are uncertain.
+/// Result of a log: a machine or a model, and the axes in it that are uncertain.
 struct FromLog<T> {
     found: T,
     warnings: Vec<String>,
