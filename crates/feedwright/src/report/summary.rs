@@ -13,7 +13,7 @@ use super::worst::WorstPlace;
 /// without feedback.
 pub(crate) const AS_EXPORTED: &str = "as exported";
 
-/// Part that a run has in a report. JSON has [`RunSummary::role`] as `measured`.
+/// Part that a run has in a report. JSON has `RunSummary::role` as `measured`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Role {
     /// Cut that the others are compared with.
