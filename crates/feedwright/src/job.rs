@@ -138,7 +138,7 @@ pub struct JobOutcome {
     pub is_of_use: bool,
     /// True if the last run was cut to its end and within the requested tolerance, if any, and a
     /// requested program is better than the original.
-    pub(crate) within_tolerance: bool,
+    pub within_tolerance: bool,
 }
 
 impl Job {
