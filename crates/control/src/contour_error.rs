@@ -137,7 +137,7 @@ impl Estimator {
 /// beside a corner the time of the tool decides on which side of the corner it is, not the
 /// distance.
 #[inline]
-pub fn locate<const N: usize>(
+pub(crate) fn locate<const N: usize>(
     window: &Window<'_, N>,
     tool_mm: [f64; N],
     near: i32,

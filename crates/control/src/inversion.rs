@@ -64,7 +64,7 @@ pub struct InversionSettings {
     /// Step size of eq. 8, scaled units; 0 to 10.
     pub eta: f64,
     /// Gradient steps in a tick; 1 to 20, the paper allows 5.
-    pub steps: usize,
+    pub(crate) steps: usize,
     /// Longest step of each F, scaled units; 0.001 to 1. Keeps the term of rho, which grows as
     /// |F|^-3, in bounds near rest.
     pub step_limit: f64,

@@ -43,11 +43,11 @@
 //! | One servo period | [`Tick`], [`Setpoint`] |
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
-//! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
+//! | Contour error | [`ContourError`], [`Estimator`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`], [`SelfReport`] |
 //! | Making one | [`AnyController`], [`MemberName`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
-//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`], [`FaultEvidence`] |
+//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`Number`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`TrainedModel`], [`ModelBlock`] |
 //!
@@ -103,8 +103,8 @@ pub use axis::mechanics::{MechanicsModel, MechanicsState};
 pub use axis::numbers::{Number, Parameters, Part, position_gains_1_s};
 pub use axis::transmission::{TableState, TransmissionModel};
 pub use axis::{AxisModel, AxisState, Periods, friction_signs};
-pub use command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
-pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
+pub use command::{Command, Measured, SelfReport, Verdict};
+pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried};
 pub use controller::feedforward::{
     ACCELERATION_GAIN, FRICTION_GAIN, Feedforward, MAX_PREVIEW, VELOCITY_GAIN, preview,
 };
@@ -123,7 +123,7 @@ pub use identifier::{
     ContourModel, Delays, ERROR_SCALE_MM, FEED_PERIODS_S, FEED_SCALE_MM_S, HIDDEN, INPUTS,
     Identifier, IdentifierKind, Inputs, seen_feed,
 };
-pub use inversion::{Gradient, InversionSettings, TimeTerm};
+pub use inversion::{Gradient, TimeTerm};
 pub use model::{
     BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_WEIGHT,
     MECHANICS_PERIODS_S, ModelBlock, RESPONSES_S, SERVO_PERIODS_S, Trained, TrainedModel,

@@ -42,7 +42,7 @@ pub fn reject<const N: usize>(a: [f64; N], direction: [f64; N]) -> [f64; N] {
 
 /// `a`, shortened to `limit` where it is longer. NaN becomes zero.
 #[inline]
-pub fn limit_norm<const N: usize>(a: [f64; N], limit: f64) -> [f64; N] {
+pub(crate) fn limit_norm<const N: usize>(a: [f64; N], limit: f64) -> [f64; N] {
     let length = norm(a);
     if length <= limit {
         a

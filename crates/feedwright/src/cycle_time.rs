@@ -55,7 +55,7 @@ const MOST_PIECES: usize = 64;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ToolTime {
     /// Its number; 0 before the first tool change.
-    pub tool: u32,
+    pub(crate) tool: u32,
     /// Time of motion and rests with the tool, s.
     pub(crate) time_s: f64,
 }
@@ -84,9 +84,9 @@ pub struct CycleTimeOptions {
 
 /// A limit with the part of the moving time in which it binds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BindingShare {
+pub(crate) struct BindingShare {
     /// Name of the limit, such as `feedrate`, `x jerk`, `tolerance`.
-    pub limit: String,
+    pub(crate) limit: String,
     /// Part of the moving time, 0 to 1; limits bind together, so parts do not add up to 1.
     pub(crate) share: f64,
 }
@@ -119,7 +119,7 @@ pub struct CycleTime {
     /// Part of the cutting time in which the planned speed is below 0.8 of the programmed feedrate.
     pub(crate) slow_share: f64,
     /// Limits that bind, the most frequent first; limits that never bind are left out.
-    pub binding: Vec<BindingShare>,
+    pub(crate) binding: Vec<BindingShare>,
     /// Time of each line in order, if requested.
     #[serde(skip)]
     pub lines: Vec<LineTime>,

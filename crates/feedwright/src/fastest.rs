@@ -90,7 +90,7 @@ pub struct FastestPlan {
     /// The machine with the tolerance of the path.
     pub machine: Machine,
     /// Bounds on the speed.
-    pub caps: Arc<SpeedCaps>,
+    pub(crate) caps: Arc<SpeedCaps>,
     /// Largest distance of the tool from the path, um.
     pub largest_um: f64,
     /// Cycle time of the plan and the limits that bind. `bound_s` is the time of a plan that gives

@@ -6,6 +6,7 @@
 //!
 //! | File | Stage |
 //! |---|---|
+//! | `job/lowered.rs` | the job of a request: files are read, names looked up |
 //! | `job/values.rs` | which values it takes |
 //! | `job/read.rs` | program, reference and log are read, and suit the machine |
 //! | `job/model_of_log.rs` | the model of the machine, from a log |
@@ -25,6 +26,7 @@
 //! | `job/results.rs` | the figures as JSON |
 
 mod guests;
+mod lowered;
 mod values;
 mod read;
 mod model_of_log;
@@ -47,68 +49,59 @@ use feedwright_sim::{Machine, Sink, Watch};
 
 use crate::compensation::GeometryChoice;
 use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, UNCORRECTED};
-use crate::correct::{CorrectJob, CorrectOutcome, TargetControl};
+use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestPlan, TolerancePlan};
 pub use crate::job_error::JobError;
 use crate::measured::MeasuredLog;
-use crate::recorded_model::ModelOfLog;
 use crate::report::Report;
 use crate::report::harm::Harm;
+use crate::request::JobRequest;
 pub use guests::Guests;
 pub use read::CheckedJob;
-pub(crate) use values::check_tolerance;
 
-/// A program, a machine, two controllers, and what is wanted of the cuts.
+/// A request whose files are read and whose names are looked up, so that it can run.
 ///
-/// [`Job::new`] cuts the program without a correction and with the default controller; what else is
-/// wanted is set in its fields. A [`JobRequest`](crate::JobRequest) makes it of names and files.
+/// [`Job::new`] cuts the program without a correction and with the default controller. What else is
+/// wanted of it is an option of its `request`, such as `job.request.tolerance_um`. The other fields
+/// are what the request's names and paths stand for. [`JobRequest::job`] makes a job of a request.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Job {
+    /// The options. Its names and paths are those of the other fields; a job does not look them up
+    /// again.
+    pub request: JobRequest,
+    /// Date of the models that come of the job, year-month-day.
+    pub(crate) today: String,
     /// The G-code program.
     pub program: Program,
     /// The machine that cuts it.
     pub machine: Machine,
-    /// The file that the machine was read from, for the report; none where it is built in.
-    pub machine_file: Option<String>,
+    /// The machine that records the log of a missing model: as its file has it, whatever limits
+    /// `machine` is planned with.
+    recorder: Machine,
     /// The geometry that the control compensates, in all cuts.
     pub compensation: GeometryChoice,
     /// The requested controller.
     pub controller: &'static Entry,
     /// Controller for comparison.
     pub against: &'static Entry,
-    /// Replaces every programmed feedrate, mm/s.
-    pub feed_mm_s: Option<f64>,
     /// Settings of the controllers.
     pub choices: Choices,
-    /// A model for the requested controller, in place of a training.
-    pub model: Option<Model>,
-    /// Log that gives a missing model; `None` trains the controller on the machine.
-    pub model_of_log: Option<ModelOfLog>,
+    /// A model for the requested controller, in place of a training. One that is missing comes from
+    /// a simulated log, or with `exact_settings` from a training on the machine.
+    pub(crate) model: Option<Model>,
     /// Machines that fit the recording of the model. Each is cut with the controller too, and the
     /// results are the band of the report.
     pub fitting: Vec<Machine>,
-    /// The day, year-month-day, on which the model that the controller learns is written; `None`
-    /// where none is wanted.
-    pub learned_on: Option<String>,
-    /// Largest contour error that is allowed, um. Where the machine is planned axis by axis, the
-    /// planned path uses what the predicted error of the machine leaves of it.
-    pub tolerance_um: Option<f64>,
     /// The control, without feedback, that a corrected program is made for.
     pub target: Option<&'static TargetControl>,
-    /// Standard deviation of each value of the machine for the corrected program, as a fraction.
-    pub file_error: f64,
     /// Plans the program with the planner of this control instead of the machine's planner.
-    pub planned_as: Option<&'static TargetControl>,
+    pub(crate) planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
-    pub reference: Option<Program>,
-    /// Cut as fast as the tolerance allows the requested controller.
-    pub fastest: bool,
-    /// Find which limit of the machine binds the feedrate along the path.
-    pub with_limits: bool,
+    pub(crate) reference: Option<Program>,
     /// Log that a machine recorded while it cut the program, shown beside the predicted values.
-    pub log: Option<Arc<MeasuredLog>>,
+    pub(crate) log: Option<Arc<MeasuredLog>>,
     /// Settings of the reader.
     pub reader: feedwright_gcode::Settings,
 }
@@ -132,14 +125,14 @@ pub struct JobOutcome {
     /// was requested.
     pub learned: Option<Model>,
     /// The corrected program for another control, if one was requested; its run is the last.
-    pub exported: Option<CorrectOutcome>,
+    pub(crate) exported: Option<CorrectOutcome>,
     /// The plan of least time, if it was requested.
     pub fastest: Option<FastestPlan>,
     /// Tolerance of the planned path, um, where it is a part of the tolerance of the tool.
-    pub path_um: Option<f64>,
+    pub(crate) path_um: Option<f64>,
     /// Respects in which the correction is worse than uncorrected; empty where it is compared with
     /// something else.
-    pub harm: Vec<Harm>,
+    pub(crate) harm: Vec<Harm>,
     /// True if the command of the controller may be used: it was cut to its end, does no harm, and
     /// asks no drive for twice its limit.
     pub is_of_use: bool,
@@ -152,25 +145,23 @@ impl Job {
     /// Cuts a program on a machine without a correction, and with the default controller.
     pub fn new(program: Program, machine: Machine) -> Self {
         Self {
+            request: JobRequest {
+                exact_settings: true,
+                ..JobRequest::default()
+            },
+            today: String::new(),
             program,
+            recorder: machine.clone(),
             machine,
-            machine_file: None,
             compensation: GeometryChoice::default(),
             controller: &LQG_IDENTIFIED,
             against: &UNCORRECTED,
-            feed_mm_s: None,
             choices: Choices::default(),
             model: None,
-            model_of_log: None,
             fitting: Vec::new(),
-            learned_on: None,
-            tolerance_um: None,
             target: None,
-            file_error: CorrectJob::usual_file_error(false),
             planned_as: None,
             reference: None,
-            fastest: false,
-            with_limits: false,
             log: None,
             reader: feedwright_gcode::Settings::default(),
         }

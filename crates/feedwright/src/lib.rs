@@ -12,7 +12,7 @@
 //!
 //! let program = Program::from_text("circle.ngc", "G17 G21 G90 F3000\nG2 X0 Y0 I10 J0\nM2\n");
 //! let mut job = Job::new(program, Machine::load("tnv40".as_ref())?);
-//! job.tolerance_um = Some(10.0);
+//! job.request.tolerance_um = Some(10.0);
 //!
 //! let checked = job.check()?;
 //! let mut setpoints = SetpointWriter::new(Vec::new(), checked.axes())?;
@@ -114,8 +114,8 @@ mod recorded_model;
 mod job_error;
 mod compensation;
 mod correct;
-mod job;
 mod request;
+mod job;
 #[cfg(feature = "command")]
 mod machine_document;
 #[cfg(feature = "files")]
@@ -148,17 +148,17 @@ pub use log_job::{
 pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
 pub use output::{OutputError, OutputFile, OutputFiles};
-pub use recorded_model::{ModelOfLog, RecordedModelError, built_in_lines, recorded_machine};
+pub use recorded_model::{RecordedModelError, built_in_lines, recorded_machine};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, write_figure_page,
 };
 pub use report::harm::{CutErrors, ErrorChange, MAX_UM, RMS_UM, UNCUT_UM, harm};
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
-pub use report::text::{escaped, number};
+pub use report::text::escaped;
 pub use report::{
-    Assumptions, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, LimitBand, PageUnits,
-    ProgramLine, Report, ReportedRun, Role, Roundness, RunFacts, RunSummary, Series, Statistics,
-    TimelineEvent, write_html, write_html_data, write_html_in,
+    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, LimitBand, PageUnits, ProgramLine, Report,
+    ReportedRun, Role, Roundness, RunFacts, RunSummary, Series, Statistics, TimelineEvent,
+    write_html, write_html_data, write_html_in,
 };
 pub use request::JobRequest;
 pub use request::named::find_control;

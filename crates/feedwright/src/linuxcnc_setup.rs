@@ -74,7 +74,7 @@ pub struct LinuxcncWiring {
     /// Pins of hardware that the copy disconnects, because a simulated machine stands in for it.
     pub(crate) disconnected: Vec<String>,
     /// Changes that the configuration needs before the correction is enabled.
-    pub changes: Vec<String>,
+    pub(crate) changes: Vec<String>,
     /// Next steps, with the exact commands.
     pub(crate) steps: Vec<String>,
     /// The files that were written.

@@ -19,14 +19,15 @@ use std::ops::Range;
 
 use feedwright_gcode::visible;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, Log, ModelTerm, ModelVerdict,
-    NotFound, NumberSource, identify_machine,
+    AxisFacts, Fitness, FoundMachine, GreyBoxOptions, Log, ModelTerm, ModelVerdict, NotFound,
+    NumberSource, identify_machine,
 };
 use feedwright_sim::{Cancelled, Machine, StageSteps, Watch, significant};
 use miette::Diagnostic;
 use thiserror::Error;
 
 pub use json::write as write_json;
+pub(crate) use machine_text::identified_machine;
 pub use machine_text::machine_text;
 pub use page::{following as following_figure, write as write_page};
 pub use update::updated_text;
@@ -48,13 +49,13 @@ pub struct LogJob {
 #[derive(Debug, Clone)]
 pub struct LogIdentified {
     /// The job.
-    pub job: LogJob,
+    pub(crate) job: LogJob,
     /// The log, or the windows of it that were used.
     pub log: Log,
     /// The identified machine.
     pub machine: FoundMachine,
     /// Number of samples in the whole log, if only windows of it were used.
-    pub of_samples: Option<usize>,
+    pub(crate) of_samples: Option<usize>,
 }
 
 /// Reasons why an identification fails.
@@ -79,26 +80,12 @@ impl LogJob {
     /// Fails if the model of an axis cannot be identified from the log, or if the work is canceled.
     pub fn run(self, log: Log, watch: &dyn Watch) -> Result<LogIdentified, LogJobError> {
         let (log, of_samples) = informative(log);
-        let records: Vec<AxisRecord<'_>> = log
-            .axes
-            .iter()
-            .map(|axis| AxisRecord {
-                name: &axis.name,
-                sample_s: log.sample_time_s,
-                stretches: &log.stretches,
-                command_mm: &axis.command_mm,
-                actual_mm: &axis.actual_mm,
-                step_mm: axis.step_mm,
-            })
-            .collect();
-        let torques: Vec<Option<&[f64]>> =
-            log.axes.iter().map(|axis| axis.torque.as_deref()).collect();
         let options = GreyBoxOptions {
             times_s: self.times_s.clone(),
             facts: self.facts_of(&log),
         };
         let mut steps = StageSteps::begin(watch, "identifying the axes");
-        let machine = identify_machine(&records, &torques, &log.time_s, &options, |part| {
+        let machine = identify_machine(&log, &options, |part| {
             steps.reach(part);
             !watch.is_cancelled()
         })?;

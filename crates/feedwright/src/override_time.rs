@@ -24,7 +24,7 @@ const MOMENTS: u32 = 8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OperatorRequest {
     /// Override of feeds, 1 for none, up to [`MOST_OVERRIDE`](feedwright_plan::MOST_OVERRIDE).
-    pub override_of_feeds: f64,
+    pub(crate) override_of_feeds: f64,
     /// Time at which the feed hold is pressed, s.
     pub(crate) hold_at_s: Option<f64>,
 }
@@ -35,11 +35,11 @@ pub(crate) struct HoldStop {
     /// Time at which the feed hold was pressed, s.
     pub(crate) at_s: f64,
     /// Time from the feed hold until the tool rests, s.
-    pub stops_in_s: f64,
+    pub(crate) stops_in_s: f64,
     /// Way of the tool along the path until it rests, mm.
     pub(crate) way_mm: f64,
     /// Least possible way with the limits of each axis by itself, mm.
-    pub least_mm: f64,
+    pub(crate) least_mm: f64,
     /// Position at rest, mm.
     pub(crate) position_mm: [f64; 3],
 }
@@ -50,11 +50,11 @@ pub(crate) struct OverrideTime {
     /// Time until the program ends or the tool rests after the hold, s.
     pub(crate) time_s: f64,
     /// Time of the whole plan without override and hold, s.
-    pub plan_s: f64,
+    pub(crate) plan_s: f64,
     /// Largest ratio of a velocity, acceleration or jerk to its limit.
     pub(crate) largest_violation: f64,
     /// The stop, if a hold was requested before the end.
-    pub hold: Option<HoldStop>,
+    pub(crate) hold: Option<HoldStop>,
 }
 
 /// Plans a program, and moves along the plan. None if the planner does not provide the motion of

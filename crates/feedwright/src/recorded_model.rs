@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! program of excite -> cut uncorrected -> log of commands and encoders
-//!     -> model of each axis -> machine file -> model
+//!     -> model of each axis -> machine -> model
 //! ```
 //!
 //! Models are kept by content: the same program and the same machine find the same model. The
@@ -13,11 +13,9 @@ mod built_in;
 
 use std::path::Path;
 
-use feedwright_control::IdentifierKind;
 use feedwright_gcode::Program;
 use feedwright_ident::{
-    AxisFacts, Columns, ExciteOptions, Log, Model, ModelVerdict, SERVO_MECHANICS,
-    excitation_program, recorded_log, servo_period_s,
+    AxisFacts, Columns, ExciteOptions, Log, Model, ModelVerdict, excitation_program, recorded_log,
 };
 use feedwright_sim::{Cancelled, Machine, Watch};
 use miette::Diagnostic;
@@ -27,11 +25,10 @@ use thiserror::Error;
 
 use crate::controllers::{Choices, Entry, Setup, identifying};
 use crate::identifier_cache::geometry_content;
-use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
+use crate::log_job::{LogIdentified, LogJob, LogJobError, identified_machine};
 use crate::store::{keep, kept, program_key};
 
-/// Largest number of machines that are drawn from a log. Their files are kept with the machine's
-/// own file.
+/// Largest number of machines that are drawn from a log. They are kept with the machine itself.
 const MOST_FITTING: usize = 32;
 /// Bits by which the number of a draw is shifted before it is added to the seed of the log, so that
 /// consecutive seeds give different draws.
@@ -78,41 +75,100 @@ pub enum RecordedModelError {
     Cancelled(#[from] Cancelled),
 }
 
-/// A text that follows from a log, and the axes in it that are uncertain.
+/// Result of a log: a machine or a model, and the axes in it that are uncertain.
+struct FromLog<T> {
+    found: T,
+    warnings: Vec<String>,
+    /// Other machines that fit the log about as well; `None` for a draw that no machine can be.
+    fitting: Vec<Option<Machine>>,
+}
+
+/// The same as it is kept and shipped, with the texts of files.
 #[derive(Serialize, Deserialize)]
-struct FromLog {
+struct KeptFromLog {
     text: String,
     #[serde(rename = "doubts")]
     warnings: Vec<String>,
-    /// Machine files of other machines that fit the log about as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     fitting: Vec<String>,
 }
 
-impl FromLog {
-    /// Returns the text that is shipped with the program, with at least `fitting` machines, or that
-    /// is kept for the content; otherwise makes it.
+/// A value whose file reads back as the same value, to the bit.
+trait InFile: Sized {
+    fn text(&self) -> String;
+    fn read(text: &str) -> Option<Self>;
+}
+
+impl InFile for Machine {
+    fn text(&self) -> String {
+        self.text()
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        Self::parse("a machine file of the log", text).ok()
+    }
+}
+
+impl InFile for Model {
+    fn text(&self) -> String {
+        self.text()
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        Self::parse("the model of the log", text).ok()
+    }
+}
+
+impl KeptFromLog {
+    fn of<T: InFile>(from_log: &FromLog<T>) -> Self {
+        let text = |machine: &Option<Machine>| machine.as_ref().map(Machine::text);
+        Self {
+            text: from_log.found.text(),
+            warnings: from_log.warnings.clone(),
+            fitting: from_log
+                .fitting
+                .iter()
+                .map(|machine| text(machine).unwrap_or_default())
+                .collect(),
+        }
+    }
+
+    fn read<T: InFile>(self) -> Option<FromLog<T>> {
+        Some(FromLog {
+            found: T::read(&self.text)?,
+            warnings: self.warnings,
+            fitting: self.fitting.iter().map(|text| InFile::read(text)).collect(),
+        })
+    }
+}
+
+impl<T: InFile> FromLog<T> {
+    /// Returns what is shipped with the program, with at least `fitting` machines, or what is kept
+    /// for the content; otherwise makes it.
     fn of(
         content: &Value,
         fitting: usize,
         make: impl FnOnce() -> Result<Self, RecordedModelError>,
     ) -> Result<Self, RecordedModelError> {
-        if let Some(shipped) =
-            built_in::from_log(content).filter(|from_log| from_log.fitting.len() >= fitting)
+        if let Some(shipped) = built_in::from_log(content)
+            .filter(|texts| texts.fitting.len() >= fitting)
+            .and_then(KeptFromLog::read)
         {
             return Ok(shipped);
         }
         let Some(key) = program_key(content) else {
             return make();
         };
-        if let Some(kept) = kept(&key) {
+        if let Some(kept) = kept(&key).and_then(KeptFromLog::read) {
             return Ok(kept);
         }
         let made = make()?;
-        keep(&key, &made);
+        keep(&key, &KeptFromLog::of(&made));
         Ok(made)
     }
+}
 
+impl FromLog<Machine> {
     /// Identifies a machine from a new log.
     fn identified(
         machine: &Machine,
@@ -125,9 +181,10 @@ impl FromLog {
             format!("{} by its log", machine.name),
             warnings(&identified),
         );
-        let text = machine_text(&identified, &name);
+        let recorded = identified_machine(&identified, &name)
+            .map_err(|error| not_determined(machine, &error))?;
         let found = identified.machine.axes.clone();
-        let mechanics_s = servo_period_s(identified.machine.sample_s) / f64::from(SERVO_MECHANICS);
+        let mechanics_s = recorded.period.mechanics_s;
         let draw = |number: u64| {
             let seed = |axis: usize| {
                 seed.wrapping_add((MOST_FITTING as u64 * axis as u64 + number) << SEED_SHIFT)
@@ -137,60 +194,29 @@ impl FromLog {
                 .enumerate()
                 .map(|(i, axis)| axis.drawn(seed(i), mechanics_s))
                 .collect();
-            machine_text(&identified, &name)
+            identified_machine(&identified, &name).ok()
         };
         Ok(Self {
-            text,
+            found: recorded,
             warnings,
             fitting: (1..=MOST_FITTING as u64).map(draw).collect(),
         })
     }
 }
 
-/// Log from which the controller of a job gets its model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModelOfLog {
-    /// Machine that records it: as its file has it, whatever limits the job plans with.
-    pub machine: Machine,
-    /// Date in the model file.
-    pub date: String,
-    /// Number of other machines that fit the log as well and are cut, too.
-    pub fitting: usize,
-}
-
-impl ModelOfLog {
-    /// Returns the model for a controller; `None` if the controller uses no model of the axes.
-    ///
-    /// # Errors
-    /// The model of an axis cannot be identified from the log, or the work is canceled.
-    pub(crate) fn model(
-        &self,
-        axes: usize,
-        (entry, choices): (&Entry, &Choices),
-        watch: &dyn Watch,
-    ) -> Result<Option<RecordedModel>, RecordedModelError> {
-        if entry.identifier != Some(IdentifierKind::Axes) {
-            return Ok(None);
-        }
-        let (machine, seed, date) = (&self.machine, choices.seed, self.date.clone());
-        let mut found = recorded_model(machine, axes, (entry, choices), date, watch)?;
-        if self.fitting > 0 {
-            found.fitting = fitting_machines(machine, axes, seed, self.fitting, watch)?;
-        }
-        Ok(Some(found))
-    }
-}
-
 /// Returns the model of the first two or three axes of a machine, for a controller that uses one.
 /// The machine cuts the program of `excite` uncorrected, and the model is identified from the log.
-/// `date` becomes the date in the model file.
+/// `date` becomes the date in the model file. `fitting` machines that fit the log about as well are
+/// with it.
 ///
-/// Fails if no model can be identified from the log, or if the work is canceled.
-fn recorded_model(
+/// # Errors
+/// No model can be identified from the log, or the work is canceled.
+pub(crate) fn recorded_model(
     machine: &Machine,
     axes: usize,
     (entry, choices): (&Entry, &Choices),
     date: String,
+    fitting: usize,
     watch: &dyn Watch,
 ) -> Result<RecordedModel, RecordedModelError> {
     let content = model_content(machine, axes, (entry, choices));
@@ -199,20 +225,20 @@ fn recorded_model(
         let (from_log, warnings) = steps.filled(LOG_SHARE, |watch| {
             recorded_machine(machine, axes, choices.seed, watch)
         })?;
-        let text = trained(machine, &from_log, axes, (entry, choices), date)?;
         Ok(FromLog {
-            text,
+            found: trained(machine, &from_log, axes, (entry, choices), date)?,
             warnings,
             fitting: vec![],
         })
     };
     let from_log = FromLog::of(&content, 0, make)?;
-    let model = Model::parse("the model of the log", &from_log.text)
-        .map_err(|error| not_determined(machine, &error))?;
     Ok(RecordedModel {
-        model,
+        model: from_log.found,
         warnings: from_log.warnings,
-        fitting: Vec::new(),
+        fitting: match fitting {
+            0 => Vec::new(),
+            number => fitting_machines(machine, axes, choices.seed, number, watch)?,
+        },
     })
 }
 
@@ -221,18 +247,17 @@ fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Cho
     json!(["model", axes, entry.name, choices, log_content(machine)])
 }
 
-/// Returns the model file of a machine that was identified from a log.
+/// Returns the model of a machine that was identified from a log.
 fn trained(
     machine: &Machine,
     from_log: &Machine,
     axes: usize,
     (entry, choices): (&Entry, &Choices),
     date: String,
-) -> Result<String, RecordedModelError> {
-    let model = Setup::new(from_log, choices)
+) -> Result<Model, RecordedModelError> {
+    Setup::new(from_log, choices)
         .train(entry, axes, date)
-        .map_err(|error| not_determined(machine, &error))?;
-    Ok(model.text())
+        .map_err(|error| not_determined(machine, &error))
 }
 
 /// Returns the first axes of a machine as identified from their log, and the axes that the log does
@@ -246,11 +271,7 @@ pub fn recorded_machine(
     watch: &dyn Watch,
 ) -> Result<(Machine, Vec<String>), RecordedModelError> {
     let from_log = machine_from_log(machine, axes, seed, 0, watch)?;
-    let read = Machine::parse("the machine file of the log", &from_log.text);
-    Ok((
-        read.map_err(|error| not_determined(machine, &error))?,
-        from_log.warnings,
-    ))
+    Ok((from_log.found, from_log.warnings))
 }
 
 /// Returns up to 32 machines that fit the same log about as well. Their models are drawn from the
@@ -267,11 +288,10 @@ fn fitting_machines(
     watch: &dyn Watch,
 ) -> Result<Vec<Machine>, RecordedModelError> {
     let from_log = machine_from_log(machine, axes, seed, number, watch)?;
-    let read = |text: &String| Machine::parse("a machine file of the log", text).ok();
     Ok(from_log
         .fitting
-        .iter()
-        .filter_map(read)
+        .into_iter()
+        .flatten()
         .take(number)
         .collect())
 }
@@ -290,8 +310,6 @@ pub fn built_in_lines(
     watch: &dyn Watch,
 ) -> Result<Vec<String>, RecordedModelError> {
     let from_log = FromLog::identified(machine, axes, BUILT_IN_SEED, watch)?;
-    let found = Machine::parse("the machine file of the log", &from_log.text)
-        .map_err(|error| not_determined(machine, &error))?;
     let choices = Choices {
         seed: BUILT_IN_SEED,
         tries: true,
@@ -299,15 +317,15 @@ pub fn built_in_lines(
     };
     let mut lines = vec![built_in::line(
         &content(machine, axes, BUILT_IN_SEED),
-        &from_log,
+        &KeptFromLog::of(&from_log),
     )];
     // A log that identifies a machine need not give a model: each cut then reports that.
-    if let Ok(text) = trained(machine, &found, axes, (entry, &choices), date) {
-        let model = FromLog {
-            text,
+    if let Ok(found) = trained(machine, &from_log.found, axes, (entry, &choices), date) {
+        let model = KeptFromLog::of(&FromLog {
+            found,
             warnings: from_log.warnings,
             fitting: vec![],
-        };
+        });
         lines.push(built_in::line(
             &model_content(machine, axes, (entry, &choices)),
             &model,
@@ -344,7 +362,7 @@ fn machine_from_log(
     seed: u64,
     fitting: usize,
     watch: &dyn Watch,
-) -> Result<FromLog, RecordedModelError> {
+) -> Result<FromLog<Machine>, RecordedModelError> {
     FromLog::of(&content(machine, axes, seed), fitting, || {
         FromLog::identified(machine, axes, seed, watch)
     })

@@ -35,7 +35,7 @@ pub(crate) use assumptions::ModelKnowledge;
 pub(crate) use band::{Band, BandErrors};
 pub use circles::{FullCircle, Roundness};
 pub(crate) use circles::{RadialDeviations, full_circles};
-pub use compensated::CompensatedGeometry;
+pub(crate) use compensated::CompensatedGeometry;
 pub use error_spectrum::ErrorSpectrum;
 pub(crate) use error_spectrum::SpectrumBand;
 pub(crate) use histogram::Histogram;

@@ -1,18 +1,18 @@
 //! Request for a job, as a user states it: names, paths, texts and values with their units.
 //!
-//! Command line, sweep, Python, gym and page each make a [`JobRequest`]. [`JobRequest::job`] reads
-//! its files, looks its names up, and makes what runs. An option is one field.
+//! Command line, sweep, Python, gym and page each make a [`JobRequest`]. An option is one field of
+//! it: the jobs read it there. `JobRequest::job` (`job/lowered.rs`) reads the files, looks the names
+//! up, and makes the job that runs.
 
 pub(crate) mod named;
 mod setting_map;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Arc;
 
 use feedwright_gcode::input;
 use feedwright_gcode::{AUTO, Dialect, INCH_MM, Increment, Program, Settings, ToolTable};
-use feedwright_ident::{Columns, Log, Model};
+use feedwright_ident::{Columns, Log};
 use feedwright_sim::{DEFAULT_MACHINE, GeometryFile, Machine, Watch, is_machine_path};
 use miette::{Result, miette};
 use serde::{Deserialize, Serialize};
@@ -21,10 +21,9 @@ use serde_json::Value;
 use crate::compensation::{GeometryChoice, NamedGeometry};
 use crate::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Controllers, Entry};
 use crate::correct::advise::AdviseJob;
-use crate::correct::{CorrectJob, TARGETS, TargetControl, corrected_for};
-use crate::job::{Job, check_tolerance};
+use crate::correct::{CorrectJob, TARGETS, TargetControl};
+use crate::job_error::JobError;
 use crate::measured::MeasuredLog;
-use crate::recorded_model::ModelOfLog;
 use named::{find, find_control, settings};
 #[cfg(feature = "command")]
 pub(crate) use setting_map::setting;
@@ -32,6 +31,9 @@ pub(crate) use setting_map::setting;
 /// Largest error of a machine file that `--file-error` takes, %: beyond it, a file says too little
 /// of a machine.
 const MAX_FILE_ERROR: f64 = 50.0;
+
+/// A tolerance of a metre is a mistaken unit.
+const MAX_TOLERANCE_UM: f64 = 1e6;
 
 /// Request for a job. Serialized, its fields are the keys of a job of a sweep; those that a sweep
 /// had before others came are always written, since its addresses follow from them.
@@ -262,11 +264,11 @@ impl JobRequest {
     }
 
     /// The requested controller, and the one for comparison.
-    fn controllers(&self, table: Controllers) -> Result<[&'static Entry; 2]> {
+    pub(crate) fn controllers(&self, table: Controllers) -> Result<[&'static Entry; 2]> {
         Ok([find(&self.controller, table)?, find(&self.against, table)?])
     }
 
-    fn choices(
+    pub(crate) fn choices(
         &self,
         both @ [controller, _]: [&'static Entry; 2],
         table: Controllers,
@@ -280,81 +282,20 @@ impl JobRequest {
         })
     }
 
-    /// Makes the job: reads the files of the request, and looks its names up. `today` dates the
-    /// models that come of it.
-    ///
-    /// # Errors
-    /// A name that does not exist, and a file that cannot be read or has mistakes.
-    pub fn job(&self, table: Controllers, today: &str, watch: &dyn Watch) -> Result<Job> {
-        self.job_of(self.controllers(table)?, table, today, watch)
-    }
-
-    /// Makes the job with these controllers in place of the named ones.
-    ///
-    /// # Errors
-    /// See [`JobRequest::job`].
-    pub fn job_of(
-        &self,
-        both: [&'static Entry; 2],
-        table: Controllers,
-        today: &str,
-        watch: &dyn Watch,
-    ) -> Result<Job> {
-        let mut choices = self.choices(both, table)?;
-        let target = self.target.as_deref().map(find_control).transpose()?;
-        let machine = self.machine()?;
-        let recorded = both
-            .into_iter()
-            .filter_map(|entry| Some((entry, table.recorded(&machine, entry)?)));
-        choices.take_recorded(recorded);
-        let mut job = Job::new(self.program(), machine);
-        job.machine_file = self.machine_file();
-        job.compensation = self.compensation()?;
-        [job.controller, job.against] = both;
-        job.choices = choices;
-        job.feed_mm_s = self.feed_mm_s;
-        job.tolerance_um = self.tolerance_um;
-        job.fastest = self.fastest;
-        job.with_limits = self.with_limits;
-        job.target = target;
-        job.file_error = self.file_error()?;
-        let model = self.model.as_ref().map(|path| Model::read(&self.at(path)));
-        job.model = model.transpose()?;
-        job.model_of_log = (!self.exact_settings).then(|| ModelOfLog {
-            machine: job.machine.clone(),
-            date: today.to_owned(),
-            fitting: self.band.into(),
-        });
-        job.learned_on = self.learns.then(|| today.to_owned());
-        let reference = self.reference.as_ref();
-        job.reference = reference.map(|path| Program::in_file(self.at(path)));
-        job.planned_as = reference.and_then(|_| corrected_for(&job.program));
-        if job.planned_as.is_some() {
-            job.compensation = job.compensation.in_program();
-        }
-        job.reader = self.reader()?;
-        let mut logs = self.measured(watch)?.into_iter();
-        job.log = logs.next().map(Arc::new);
-        if logs.next().is_some() {
-            return Err(miette!("a cut is compared with one log"));
-        }
-        Ok(job)
-    }
-
     /// Makes the job that corrects the program for a control without feedback.
     ///
     /// # Errors
     /// See [`JobRequest::job`], a tolerance and a file error out of range.
     pub fn correct_job(&self, watch: &dyn Watch) -> Result<CorrectJob> {
         let target = self.control()?;
-        check_tolerance(self.tolerance_um)?;
-        let file_error = self.file_error()?;
+        self.check_tolerance()?;
+        self.check_file_error()?;
         Ok(CorrectJob {
             feed_mm_s: self.feed_mm_s,
             compensation: self.compensation()?,
             reader: self.reader()?,
             logs: self.measured(watch)?,
-            file_error,
+            file_error: self.file_error_part(),
             ..CorrectJob::new(self.program(), self.machine()?, target)
         })
     }
@@ -365,11 +306,11 @@ impl JobRequest {
     /// See [`JobRequest::job`], a tolerance that is missing, or out of range as the file error.
     pub fn advise_job(&self) -> Result<AdviseJob> {
         let target = self.control()?;
-        check_tolerance(self.tolerance_um)?;
+        self.check_tolerance()?;
         let tolerance_um = self
             .tolerance_um
             .ok_or_else(|| miette!("the tolerance is missing"))?;
-        let file_error = self.file_error()?;
+        self.check_file_error()?;
         Ok(AdviseJob {
             controller: find(&self.controller, CONTROLLERS)?,
             choices: Choices {
@@ -378,7 +319,7 @@ impl JobRequest {
             },
             compensation: self.compensation()?,
             reader: self.reader()?,
-            file_error,
+            file_error: self.file_error_part(),
             ..AdviseJob::new(self.program(), self.machine()?, target, tolerance_um)
         })
     }
@@ -388,14 +329,33 @@ impl JobRequest {
         self.target.as_deref().map_or(Ok(&TARGETS[0]), find_control)
     }
 
-    /// The error of the machine file, as a fraction.
-    fn file_error(&self) -> Result<f64> {
+    /// Refuses a tolerance that is not above 0 or looks like another unit.
+    pub(crate) fn check_tolerance(&self) -> Result<(), JobError> {
+        let in_range = |value: &f64| *value > 0.0 && *value <= MAX_TOLERANCE_UM;
+        let Some(value) = self.tolerance_um.filter(|value| !in_range(value)) else {
+            return Ok(());
+        };
+        Err(JobError::Value {
+            name: "--tolerance",
+            value,
+            unit: " um",
+            bounds: format!("above 0 and up to {MAX_TOLERANCE_UM} um"),
+            hint: Some("the unit is um: 0.01 mm is --tolerance 10"),
+        })
+    }
+
+    /// Returns the error of the machine file, %: the stated one, or the usual one of a file.
+    fn file_error_percent(&self) -> f64 {
         let is_file = self.machine_file().is_some();
-        let percent = self
-            .file_error
-            .unwrap_or_else(|| 100.0 * CorrectJob::usual_file_error(is_file));
+        self.file_error
+            .unwrap_or_else(|| 100.0 * CorrectJob::usual_file_error(is_file))
+    }
+
+    /// Refuses an error of the machine file that is out of range.
+    pub(crate) fn check_file_error(&self) -> Result<()> {
+        let percent = self.file_error_percent();
         if (0.0..=MAX_FILE_ERROR).contains(&percent) {
-            return Ok(percent / 100.0);
+            return Ok(());
         }
         Err(miette!(
             help = "the unit is percent: 0 if the values are exact, 10 if they are typed by hand",
@@ -403,8 +363,13 @@ impl JobRequest {
         ))
     }
 
+    /// Returns the error of the machine file, as a fraction.
+    pub(crate) fn file_error_part(&self) -> f64 {
+        self.file_error_percent() / 100.0
+    }
+
     /// Reads the logs.
-    fn measured(&self, watch: &dyn Watch) -> Result<Vec<MeasuredLog>> {
+    pub(crate) fn measured(&self, watch: &dyn Watch) -> Result<Vec<MeasuredLog>> {
         let columns = self.columns.as_deref().map(Columns::from_str).transpose()?;
         let columns = columns.unwrap_or_default();
         let read = |path: &PathBuf| {

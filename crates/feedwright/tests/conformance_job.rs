@@ -94,24 +94,22 @@ fn everything_that_can_be_asked_for_is_read_back_and_is_in_the_job() {
         (&set[..], u64::MAX)
     );
     assert_eq!(
-        (job.feed_mm_s, job.tolerance_um),
+        (job.request.feed_mm_s, job.request.tolerance_um),
         (Some(33.3), Some(1.0 / 3.0))
     );
     assert_eq!(job.target.map(|target| target.name), Some(TARGETS[2].name));
-    assert_eq!(
-        (job.compensation, job.file_error),
-        (GeometryChoice::Off, 0.07)
-    );
+    assert_eq!(job.compensation, GeometryChoice::Off);
+    assert_eq!(full.correct_job(&()).unwrap().file_error, 0.07);
     assert_eq!(job.reader.dialect, Some(Dialect::FanucLathe));
     assert_eq!(
         (job.reader.increment, job.reader.max_motions),
         (full.increment, 7)
     );
-    let model_of_log = job.model_of_log.unwrap();
-    assert_eq!(
-        (model_of_log.fitting, &*model_of_log.date),
-        (8, "2026-01-02")
-    );
+    let kept = JobRequest {
+        program_text: None,
+        ..full
+    };
+    assert_eq!(job.request, kept);
 }
 
 #[test]

@@ -103,7 +103,7 @@ mod program;
 pub use flow::reader::Reader;
 pub use flow::summary::{CheckError, Summary, summarize};
 pub use program::Program;
-pub use settings::tools::{Tool, ToolTable, ToolTableError};
+pub use settings::tools::{ToolTable, ToolTableError};
 pub use settings::{AUTO, DIALECTS, Dialect, Increment, Settings};
 pub use state::in_force::ModesInForce;
 pub use state::modal::INCH_MM;

@@ -19,7 +19,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_ident::{
-    BallBarProgram, FoundGeometry, GeometryInput, KnownScrew, SimulatedBallBar, fit_geometry,
+    BallBarProgram, FoundGeometry, GeometryInput, SimulatedBallBar, fit_geometry,
 };
 use feedwright_sim::{AxisGeometry, GeometryFile, Machine, MeasuredSquareness};
 use rayon::prelude::*;
@@ -83,8 +83,7 @@ fn found(machine: &Machine, bar: SimulatedBallBar) -> FoundGeometry {
     else {
         unreachable!("a bar")
     };
-    let screws = [0, 1, 2].map(|axis| KnownScrew::of(machine, axis));
-    fit_geometry(sets, screws, "a simulated bar").unwrap()
+    fit_geometry(sets, &machine.axes, "a simulated bar").unwrap()
 }
 
 /// The true value of a found one.

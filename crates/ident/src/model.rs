@@ -51,21 +51,21 @@ pub struct Model {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct About {
     /// Format of the file.
-    pub format: u64,
+    pub(crate) format: u64,
     /// Version of feedwright that wrote it.
-    pub written_by: String,
+    pub(crate) written_by: String,
     /// Kind of the identifier, see [`name`].
-    pub kind: String,
+    pub(crate) kind: String,
     /// Number of axes.
-    pub axes: u64,
+    pub(crate) axes: u64,
     /// Description of the training data.
     pub source: String,
     /// Date of the training, as year-month-day.
     pub date: String,
     /// Hash of the recording that it was trained on.
-    pub training_data: String,
+    pub(crate) training_data: String,
     /// Checksum of the content.
-    pub checksum: String,
+    pub(crate) checksum: String,
 }
 
 /// Periods that it was trained for.

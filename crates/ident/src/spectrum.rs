@@ -102,7 +102,7 @@ pub struct Spectrum {
     /// Number of independent values behind each value of `power`.
     pub(crate) weight_of_value: f64,
     /// Standard deviation to which the window widens a line, turns a sample.
-    pub width: f64,
+    pub(crate) width: f64,
 }
 
 /// Standard deviations of the window in half a segment.

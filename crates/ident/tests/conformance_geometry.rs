@@ -4,15 +4,19 @@
 use std::fmt::Write;
 
 use feedwright_ident::{
-    BallBarProgram, FoundGeometry, GeometryInput, KnownScrew, SimulatedBallBar, comp_file,
-    fit_geometry, geometry_of_tables, sampled_table,
+    BallBarProgram, FoundGeometry, GeometryInput, SimulatedBallBar, comp_file, fit_geometry,
+    geometry_of_tables, sampled_table,
 };
-use feedwright_sim::{AxisGeometry, GeometryFile, Machine, MeasuredSet, MeasuredSquareness};
+use feedwright_sim::{Axis, AxisGeometry, GeometryFile, Machine, MeasuredSet, MeasuredSquareness};
 
-const SCREWS: [Option<KnownScrew>; 3] = [Some(KnownScrew {
-    lead_mm: 10.0,
-    windup_um: 0.0,
-}); 3];
+/// Three axes with rigid screws.
+fn rigid() -> [Axis; 3] {
+    let axis = Axis {
+        lead_mm_per_rev: 10.0,
+        ..Axis::default()
+    };
+    [axis; 3]
+}
 
 fn truth() -> GeometryFile {
     let axis = |scale_um_m: f64, pitch_error_um: f64, backlash_um: f64| AxisGeometry {
@@ -114,8 +118,12 @@ const OF_XY: [(&str, f64); 9] = [
 fn a_calibrated_ball_bar_determines_everything_in_its_plane_within_its_standard_deviations() {
     let mut within = [0; 2];
     for seed in 1..=40 {
-        let found =
-            fit_geometry(sets(&bar_text("xy", true, 0.3, seed), None), SCREWS, "bar").unwrap();
+        let found = fit_geometry(
+            sets(&bar_text("xy", true, 0.3, seed), None),
+            &rigid(),
+            "bar",
+        )
+        .unwrap();
         for (name, true_value) in OF_XY {
             let (value, std) = value(&found, name);
             assert!(
@@ -144,7 +152,7 @@ fn a_calibrated_ball_bar_determines_everything_in_its_plane_within_its_standard_
 
 #[test]
 fn a_bar_of_unknown_length_determines_the_difference_of_scales_and_says_so() {
-    let found = fit_geometry(sets(&bar_text("xy", false, 0.3, 3), None), SCREWS, "bar").unwrap();
+    let found = fit_geometry(sets(&bar_text("xy", false, 0.3, 3), None), &rigid(), "bar").unwrap();
     let ((x, std), (y, _)) = (value(&found, "scale x"), value(&found, "scale y"));
     assert!(
         (x - y - 35.0).abs() < 5.0 * std && (x + y).abs() < 1e-6,
@@ -189,7 +197,7 @@ fn three_planes_and_a_laser_determine_the_whole_geometry() {
         .unwrap();
     }
     all.extend(sets(&laser, Some(0)));
-    let found = fit_geometry(all, SCREWS, "all").unwrap();
+    let found = fit_geometry(all, &rigid(), "all").unwrap();
     let of_z = [
         ("scale z", 10.0),
         ("squareness xz", -15.0),
@@ -234,7 +242,7 @@ fn a_positioning_table_keeps_what_repeats() {
             .unwrap();
         }
     }
-    let found = fit_geometry(sets(&text, None), SCREWS, "laser").unwrap();
+    let found = fit_geometry(sets(&text, None), &rigid(), "laser").unwrap();
     assert!((value(&found, "backlash y").0 - 2.0).abs() < 0.3);
     assert!(
         (found.sets[0].repeatability_um.unwrap() - 0.2).abs() < 0.04,
@@ -274,7 +282,7 @@ fn a_test_part_determines_scale_and_squareness_and_the_size_of_the_tool() {
         let misread_um = if i % 2 == 0 { 1.0 } else { -1.0 };
         writeln!(text, "{name},{mm},{:.4}", mm + 1e-3 * (um + misread_um)).unwrap();
     }
-    let found = fit_geometry(sets(&text, None), SCREWS, "part").unwrap();
+    let found = fit_geometry(sets(&text, None), &rigid(), "part").unwrap();
     for (name, true_value) in [
         ("scale x", scale_x),
         ("scale y", scale_y),
@@ -326,7 +334,7 @@ fn a_grid_encoder_determines_scale_squareness_and_backlash() {
             writeln!(text, "{},{},{x:.6},{y:.6}", at[0], at[1]).unwrap();
         }
     }
-    let found = fit_geometry(sets(&text, None), SCREWS, "grid").unwrap();
+    let found = fit_geometry(sets(&text, None), &rigid(), "grid").unwrap();
     for (name, true_value) in [
         ("scale x", 20.0),
         ("scale y", -15.0),
@@ -457,14 +465,14 @@ fn what_is_no_measurement_is_refused_with_a_remedy() {
             "# axis: x\nposition_mm,direction,deviation_um\n0,1,1\n10,1,2\n",
             None,
         ),
-        SCREWS,
+        &rigid(),
         "few",
     )
     .unwrap_err();
     assert!(few.to_string().contains("2 values for 2 unknowns"), "{few}");
     let missing = fit_geometry(
         sets(&bar_text("xz", true, 0.3, 1), None),
-        [SCREWS[0], SCREWS[1], None],
+        &rigid()[..2],
         "bar",
     )
     .unwrap_err();
@@ -495,8 +503,7 @@ fn a_ball_bar_on_a_simulated_machine_finds_its_geometry() {
         seed: 1,
     };
     let text = bar.text(&machine).unwrap();
-    let screws = [0, 1, 2].map(|axis| KnownScrew::of(&machine, axis));
-    let found = fit_geometry(sets(&text, None), screws, "bar").unwrap();
+    let found = fit_geometry(sets(&text, None), &machine.axes, "bar").unwrap();
     for (name, true_value, least) in [
         ("scale x", 10.0, 1.0),
         ("scale y", -10.0, 1.0),

@@ -1,11 +1,9 @@
 //! One test for each repaired fault.
 
-use std::slice::from_ref;
-
 use crate::sweep::part_or_whole;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, FoundAxis, GreyBoxOptions, ModelTerm, ModelVerdict, NotFound,
-    SearchBound, identify_machine,
+    AxisFacts, Fitness, FoundAxis, GreyBoxOptions, Log, LogAxis, LogFormat, ModelTerm,
+    ModelVerdict, NotFound, SearchBound, TorqueUnit, identify_machine,
 };
 
 /// Kp Kv / J, 1/s2, (Kv + B) / J, 1/s, and Fc / J, mm/s2, of the axis that is recorded.
@@ -89,21 +87,29 @@ fn found(
     } else {
         [&all_mm[cut..], &actual_mm[..kept]]
     };
-    let stretches = 0..kept;
-    let record = AxisRecord {
-        name: "x",
-        sample_s,
-        stretches: from_ref(&stretches),
-        command_mm,
-        actual_mm,
+    let axis = LogAxis {
+        name: "x".to_owned(),
+        command_mm: command_mm.to_vec(),
+        actual_mm: actual_mm.to_vec(),
+        torque: None,
+        torque_unit: TorqueUnit::Unknown,
         step_mm: 1e-5,
+        verdict: Fitness::ForControl,
     };
-    let time_s: Vec<f64> = (0..kept).map(|k| k as f64 * sample_s).collect();
+    let log = Log {
+        format: LogFormat::TextTable,
+        sample_time_s: sample_s,
+        stretches: std::iter::once(0..kept).collect(),
+        time_s: (0..kept).map(|k| k as f64 * sample_s).collect(),
+        axes: vec![axis],
+        still: vec![],
+        findings: vec![],
+    };
     let options = GreyBoxOptions {
         facts: vec![facts],
         ..GreyBoxOptions::default()
     };
-    let mut machine = identify_machine(&[record], &[None], &time_s, &options, |_| true)?;
+    let mut machine = identify_machine(&log, &options, |_| true)?;
     Ok(machine.axes.remove(0))
 }
 

@@ -94,7 +94,5 @@ pub use paired::{PairedSteps, PlannedPiece, ProgrammedPart};
 pub use path::arc::Arc;
 pub use path::pieces::Pieces;
 pub use path::smooth::{Jet, Parametric, Smooth};
-pub use path::{
-    Curve, MIN_FEED_MM_S, PathError, Piece, Point, Rest, Step, Steps, signed_distance_mm,
-};
+pub use path::{Curve, MIN_FEED_MM_S, PathError, Piece, Point, Step, Steps, signed_distance_mm};
 pub use plc::{Durations, EventName, Plc, PlcEvent, named};

@@ -191,11 +191,11 @@ pub struct Rest {
     /// Line of the program.
     pub(crate) line: u32,
     /// Duration by the programmed feedrate, s; 0 for a rapid.
-    pub seconds: f64,
+    pub(crate) seconds: f64,
     /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
     pub(crate) turn_deg: f64,
     /// Way of U, V and W, mm: at the machine's rapid rate it takes no less.
-    pub further_mm: f64,
+    pub(crate) further_mm: f64,
 }
 
 /// Steps in program order; the first error ends the path.

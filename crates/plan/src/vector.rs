@@ -14,7 +14,7 @@ pub fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
 
 /// Vector product.
 #[inline]
-pub fn cross(a: Vector, b: Vector) -> Vector {
+pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],

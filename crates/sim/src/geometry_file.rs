@@ -37,7 +37,7 @@ use crate::toml_file::{self, FileError, Kind, read_text};
 use observation::MeasuredSet;
 
 /// The format of geometry files that is read and written.
-pub const GEOMETRY_FORMAT: u64 = 1;
+pub(crate) const GEOMETRY_FORMAT: u64 = 1;
 
 /// A geometry file, for messages.
 const FILE_KIND: Kind = Kind {

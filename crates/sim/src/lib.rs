@@ -65,7 +65,7 @@
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
 //! `machine` reads machine files, `geometry_file` measured geometry, `reference` looks the plan up
-//! by time, `plant` is the simulated machine, `trace` takes the rows, `simulate` closes the loop,
+//! by time, `plant` is the simulated machine, `row` has the rows and `trace` writes them, `simulate` closes the loop,
 //! and `pipeline` joins all stages.
 
 #![warn(clippy::disallowed_methods)]
@@ -80,6 +80,7 @@ mod kinematics;
 mod known_geometry;
 mod reference;
 mod plant;
+mod row;
 mod trace;
 mod simulate;
 mod pipeline;
@@ -87,9 +88,7 @@ mod pipeline;
 pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused};
 pub use geometry_file::least_squares::{RankedLeastSquares, f_exceeded};
 pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};
-pub use geometry_file::{
-    AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness,
-};
+pub use geometry_file::{AxisGeometry, GeometryFile, GeometryOrigin, MeasuredSquareness};
 pub use kinematics::joints_of;
 pub use known_geometry::CompensationError;
 #[doc(hidden)]
@@ -103,9 +102,9 @@ pub use parallel::map_in_parallel;
 pub use pipeline::{PlanCache, Run, RunError, Stages, path_steps};
 pub use plant::{Measurement, Mechanism, Plant};
 pub use reference::{Foot, Reference, Sample};
+pub use row::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 pub use simulate::foot::settled_s;
 pub use simulate::uncut::Uncut;
 pub use simulate::{PlantMaker, RunResult, Stopped};
-pub use trace::csv::{SetpointWriter, TraceWriter};
-pub use trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
+pub use trace::{SetpointWriter, TraceWriter};
 pub use watch::{Cancelled, StageSteps, Watch};

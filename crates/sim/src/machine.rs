@@ -7,9 +7,10 @@
 //! `layout`.
 
 mod axis;
+mod built_in;
+mod data_sheet;
 mod error;
 pub mod keys;
-mod known;
 mod layout;
 mod plan_limits;
 
@@ -25,28 +26,10 @@ use serde::Serialize;
 use crate::toml_file::key::write;
 use crate::toml_file::{self, FileError, quoted, read_text};
 pub use axis::{Axis, Transmission};
+pub use built_in::{BUILT_IN_MACHINES, DEFAULT_MACHINE};
+pub use data_sheet::{Known, KnownAxis};
 use error::KIND;
 pub use error::MachineError;
-pub use known::{Known, KnownAxis};
-
-/// Machines that need no file: name and text.
-pub const BUILT_IN_MACHINES: &[(&str, &str)] = &[
-    ("tnv40", include_str!("../machines/tnv40.toml")),
-    ("heavy", include_str!("../machines/heavy.toml")),
-    ("sticky", include_str!("../machines/sticky.toml")),
-    ("rough", include_str!("../machines/rough.toml")),
-    ("soft", include_str!("../machines/soft.toml")),
-    ("coarse", include_str!("../machines/coarse.toml")),
-    ("workshop", include_str!("../machines/workshop.toml")),
-    ("stiff", include_str!("../machines/stiff.toml")),
-    ("router", include_str!("../machines/router.toml")),
-    ("emps", include_str!("../machines/emps.toml")),
-    ("sinumerik", include_str!("../machines/sinumerik.toml")),
-];
-
-/// Machine that programs run on by default: of the built-in machines, the one most like a real
-/// workshop machine.
-pub const DEFAULT_MACHINE: &str = "workshop";
 
 /// Names of the axes, in the order of every `[f64; 3]` of this library.
 pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
@@ -230,6 +213,19 @@ impl Machine {
         let whole = Self::parse_upon(&base_file, &base_text, &chain)?.text();
         let base_document = toml_file::document(&whole).map_err(invalid)?;
         layout::machine(&document, Some(&base_document)).map_err(invalid)
+    }
+
+    /// Returns the machine, whose axes were made of values, if a machine file may have them.
+    /// `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Every value of an axis that is out of its range, or does not suit the others.
+    pub fn checked(self, file: &str) -> Result<Self, MachineError> {
+        let faults = layout::faults_of_axes(&self);
+        if faults.is_empty() {
+            return Ok(self);
+        }
+        Err(FileError::invalid(&KIND, file, "", faults).into())
     }
 
     /// The text of a machine file that reads as this machine, without a base.

@@ -20,8 +20,8 @@ use thiserror::Error;
 
 use crate::machine::Machine;
 use crate::reference::Reference;
+use crate::row::Sink;
 use crate::simulate::{LapSetup, PlantMaker, RunResult, Stopped, simulate};
-use crate::trace::Sink;
 use crate::watch::{Cancelled, Watch};
 
 /// Stages that turn a path into a plan.

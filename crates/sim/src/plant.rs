@@ -112,7 +112,6 @@ pub struct Plant<const N: usize> {
     periods: Periods,
     /// Servo periods since the start.
     period: u64,
-    seed: u64,
     disturbance_nm: [f64; N],
     disturbance_rad_s: [f64; N],
     /// cos and sin of the angle by which the disturbance turns in one mechanics period.
@@ -169,28 +168,6 @@ impl<const N: usize> Plant<N> {
                 .and_then(|known| TableGap::new(machine, known, start_mm))
                 .map(Box::new),
             geometry,
-            seed,
-        }
-    }
-
-    /// The machine becomes another one in mid-cut, as where a workpiece is loaded. Its whole state
-    /// goes on: angles, speeds, errors, time, noise, and what is on its way to the drive or from
-    /// the encoder. Leads and periods are to be the same.
-    pub fn change_to(&mut self, machine: &Machine) {
-        let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
-        self.period = before.period;
-        (self.states, self.added_nm) = (before.states, before.added_nm);
-        if let (Some(gap), Some(before)) = (&mut self.gap, &before.gap) {
-            gap.take_over(before);
-        }
-        let Some(nonideal) = &mut self.nonideal else {
-            return;
-        };
-        for (i, axis) in nonideal.iter_mut().enumerate() {
-            axis.take_over(
-                before.nonideal.as_ref().map(|nonideal| &nonideal[i]),
-                &before.states[i],
-            );
         }
     }
 

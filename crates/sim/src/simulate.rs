@@ -29,7 +29,7 @@ use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
 use crate::plant::{Measurement, Mechanism};
 use crate::reference::{Foot, Reference, Sample};
-use crate::trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
+use crate::row::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
 pub(crate) use joints::JointError;

@@ -20,6 +20,7 @@ pub use fault::Fault;
 pub use fault::{FileError, Kind, Problem};
 pub use key::Key;
 pub use reader::Table;
+use reader::out_of_range;
 
 /// Such a file is a page or a few of text; a larger one is some other file.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;

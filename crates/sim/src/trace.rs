@@ -1,192 +1,246 @@
-//! Rows of a run: one [`Row`] per servo period, passed to every [`Sink`].
+//! Columns of a trace: rows of a run as CSV, the whole trace or the corrected setpoints alone.
+//!
+//! A column is a name in [`TraceWriter::new`] and a number in its [`Sink::row`], in the same order;
+//! its value is a field of [`Row`] (`row.rs`), which `simulate.rs` fills.
+//!
+//! Numbers are printed in the shortest form that reads back as the same f64, so that a trace can be
+//! re-simulated from its text to the last bit. A row is put together in one buffer and written in
+//! one call.
 
-pub(crate) mod csv;
+use std::io::{self, Write};
 
-use feedwright_plan::TimedEvent;
-use serde::{Deserialize, Serialize};
+use crate::machine::AXIS_NAMES;
+use crate::row::{Row, Sink};
 
-/// Kind of motion that the command makes in a servo period. The tool follows some ten milliseconds
-/// later.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Commanded {
-    /// It moves at a programmed feedrate.
-    Cut,
-    /// It moves at the machine's rapid rate.
-    Rapid,
-    /// It rests: in a dwell, or behind the end.
-    Rest,
+/// `--trace`: one line per servo period, all columns of a [`Row`].
+pub struct TraceWriter<W> {
+    out: W,
+    axes: usize,
+    text: Text,
 }
 
-/// One servo period of a run. Two-axis runs leave the third component at zero.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    /// Start of the servo period, s.
-    pub t_s: f64,
-    /// Arc length along the programmed path at `t_s`, mm.
-    pub s_mm: f64,
-    /// Line of the program whose motion is under way.
-    pub line: u32,
-    /// Planned feedrate at `s_mm`, mm/s.
-    pub feed_plan_mm_s: f64,
-    /// Programmed feedrate at the foot, mm/s; 0 on a rapid, and where it is not known. No column of
-    /// `--trace`.
-    pub programmed_mm_s: f64,
-    /// True if the program cuts at the tool: not on a rapid, and not at rest where the tool has
-    /// arrived.
-    pub cutting: bool,
-    /// Kind of motion that the command makes.
-    pub commanded: Commanded,
-    /// Point of the programmed path at `s_mm`.
-    pub path_mm: [f64; 3],
-    /// Position command of this servo period, as the servo drive gets it.
-    pub cmd_mm: [f64; 3],
-    /// Tool position that the compensated geometry gives for joints at `cmd_mm`; without
-    /// compensation, `cmd_mm`.
-    pub corrected_mm: [f64; 3],
-    /// True position of the tool at the end of this servo period.
-    pub act_mm: [f64; 3],
-    /// Motor torque at the end of this servo period, N m.
-    pub torque_nm: [f64; 3],
-    /// Foot of `act_mm`: the point of the programmed path that the contour error is measured to.
-    pub foot_mm: [f64; 3],
-    /// Unit tangent of the path at the foot, in the direction of travel.
-    pub tangent: [f64; 3],
-    /// Contour error of `act_mm`, mm: from the foot, in the plane
-    /// [signed](feedwright_plan::signed_distance_mm), magnitude in space.
-    pub contour_error_mm: f64,
+/// `--out FILE.csv`: one line per servo period, time and corrected position.
+pub struct SetpointWriter<W> {
+    out: W,
+    axes: usize,
+    text: Text,
 }
 
-impl Row {
-    /// A row at rest in the origin, on line 1 of a cut along x.
-    pub const AT_REST: Self = Self {
-        t_s: 0.0,
-        s_mm: 0.0,
-        line: 1,
-        feed_plan_mm_s: 0.0,
-        programmed_mm_s: 0.0,
-        cutting: true,
-        commanded: Commanded::Cut,
-        path_mm: [0.0; 3],
-        cmd_mm: [0.0; 3],
-        corrected_mm: [0.0; 3],
-        act_mm: [0.0; 3],
-        torque_nm: [0.0; 3],
-        foot_mm: [0.0; 3],
-        tangent: [1.0, 0.0, 0.0],
-        contour_error_mm: 0.0,
-    };
+impl<W: Write> TraceWriter<W> {
+    /// Writes the header line; `axes` is 2 or 3.
+    ///
+    /// # Errors
+    /// Where `out` takes no more.
+    pub fn new(mut out: W, axes: usize) -> io::Result<Self> {
+        let names = &AXIS_NAMES[..axes];
+        let mut columns = ["t_s", "s_mm", "line", "feed_plan_mm_s"]
+            .map(str::to_owned)
+            .to_vec();
+        columns.extend(names.iter().flat_map(|axis| {
+            [
+                format!("path_{axis}_mm"),
+                format!("cmd_{axis}_mm"),
+                format!("act_{axis}_mm"),
+                format!("torque_{axis}_nm"),
+            ]
+        }));
+        columns.push("contour_error_mm".to_owned());
+        columns.extend(names.iter().map(|axis| format!("corrected_{axis}_mm")));
+        columns.push("cutting".to_owned());
+        writeln!(out, "{}", columns.join(","))?;
+        Ok(Self {
+            out,
+            axes,
+            text: Text::default(),
+        })
+    }
+
+    /// Flushes, and gives back what was written to.
+    ///
+    /// # Errors
+    /// Where it takes no more.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.out.flush()?;
+        Ok(self.out)
+    }
 }
 
-/// Outcome of a run.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
-pub enum Outcome {
-    /// The program was cut to its end.
-    #[default]
-    Completed,
-    /// The servo loop is unstable: the distance of the tool from the command exceeds several times
-    /// the lag of a stable loop, or is not a number.
-    Diverged {
-        /// Time, s.
-        at_s: f64,
-    },
+impl<W: Write> Sink for TraceWriter<W> {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let text = &mut self.text;
+        text.number(row.t_s);
+        text.number(row.s_mm);
+        text.whole(row.line);
+        text.number(row.feed_plan_mm_s);
+        for axis in 0..self.axes {
+            text.number(row.path_mm[axis]);
+            text.number(row.cmd_mm[axis]);
+            text.number(row.act_mm[axis]);
+            text.number(row.torque_nm[axis]);
+        }
+        text.number(row.contour_error_mm);
+        for axis in 0..self.axes {
+            text.number(row.corrected_mm[axis]);
+        }
+        text.whole(u32::from(row.cutting));
+        text.end_line(&mut self.out)
+    }
 }
 
-/// The supervisor took the controller out of the loop; the rest was cut uncorrected.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FadedOut {
-    /// Time, s.
-    pub at_s: f64,
-    /// Cause, in words.
-    pub cause: &'static str,
+impl<W: Write> SetpointWriter<W> {
+    /// Writes the header line; `axes` is 2 or 3.
+    ///
+    /// # Errors
+    /// Where `out` takes no more.
+    pub fn new(mut out: W, axes: usize) -> io::Result<Self> {
+        let columns: Vec<String> = AXIS_NAMES[..axes]
+            .iter()
+            .map(|axis| format!(",{axis}_mm"))
+            .collect();
+        writeln!(out, "t_s{}", columns.concat())?;
+        Ok(Self {
+            out,
+            axes,
+            text: Text::default(),
+        })
+    }
+
+    /// Flushes, and gives back what was written to.
+    ///
+    /// # Errors
+    /// Where it takes no more.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.out.flush()?;
+        Ok(self.out)
+    }
 }
 
-/// A change of the correction.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Transition {
-    /// Time, s.
-    pub at_s: f64,
-    /// Line of the program that was commanded then.
-    pub line: u32,
-    /// Kind of change.
-    pub change: CorrectionChange,
-    /// Axis whose model changed, x, y or z; `None` for a change that is not of a model.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) axis: Option<char>,
-    /// Cause, in words; `None` if the change needs no cause.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) cause: Option<&'static str>,
-    /// Measured value that was compared with the limit, um; `None` where nothing was compared.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub found_um: Option<f64>,
-    /// Limit above which the value is a fault, um.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub limit_um: Option<f64>,
+impl<W: Write> Sink for SetpointWriter<W> {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        self.text.number(row.t_s);
+        for axis in 0..self.axes {
+            self.text.number(row.cmd_mm[axis]);
+        }
+        self.text.end_line(&mut self.out)
+    }
 }
 
-/// Kind of change of the correction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CorrectionChange {
-    /// The controller left the loop.
-    Left,
-    /// It is in the loop again.
-    Returned,
-    /// It goes by the model that it learned of an axis.
-    Learned,
-    /// It goes by the model that it was given of the axis again.
-    Given,
+/// A line under construction.
+#[derive(Default)]
+struct Text {
+    bytes: Vec<u8>,
 }
 
-impl Transition {
-    /// Returns the change in words, without the time.
-    pub fn words(&self) -> String {
-        let because = |cause: &str| match (self.found_um, self.limit_um) {
-            (Some(found_um), Some(limit_um)) => {
-                format!(", because {cause}: {found_um:.1} um where {limit_um:.1} are allowed")
-            }
-            _ => format!(", because {cause}"),
-        };
-        let because = self.cause.map(because).unwrap_or_default();
-        match self.change {
-            CorrectionChange::Left => format!("out of the loop{because}"),
-            CorrectionChange::Returned => "in the loop again".to_owned(),
-            CorrectionChange::Learned => format!(
-                "goes by what it learned of {}",
-                self.axis.unwrap_or_default()
-            ),
-            CorrectionChange::Given => format!(
-                "goes by the given model of {} again",
-                self.axis.unwrap_or_default()
-            ),
+impl Text {
+    fn number(&mut self, value: f64) {
+        let mut buffer = zmij::Buffer::new();
+        let digits = buffer.format(value);
+        // A whole number reads back the same without its ".0", and traces are full of zeros.
+        self.field(digits.strip_suffix(".0").unwrap_or(digits));
+    }
+
+    fn whole(&mut self, value: u32) {
+        self.field(&value.to_string());
+    }
+
+    fn field(&mut self, digits: &str) {
+        self.bytes.extend_from_slice(digits.as_bytes());
+        self.bytes.push(b',');
+    }
+
+    fn end_line(&mut self, out: &mut impl Write) -> io::Result<()> {
+        self.bytes.pop();
+        self.bytes.push(b'\n');
+        let result = out.write_all(&self.bytes);
+        self.bytes.clear();
+        result
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::Commanded;
+    use proptest::prelude::*;
+
+    fn row(values: [f64; 8], line: u32, cutting: bool) -> Row {
+        let triple = |offset: usize| [values[offset], values[offset + 1], values[offset + 2]];
+        Row {
+            t_s: values[0],
+            s_mm: values[1],
+            line,
+            feed_plan_mm_s: values[2],
+            programmed_mm_s: 0.0,
+            cutting,
+            commanded: Commanded::Cut,
+            path_mm: triple(0),
+            cmd_mm: triple(5),
+            corrected_mm: triple(1),
+            act_mm: triple(2),
+            torque_nm: triple(3),
+            foot_mm: triple(1),
+            tangent: triple(4),
+            contour_error_mm: values[7],
         }
     }
-}
 
-/// Takes the rows of a run in order.
-pub trait Sink {
-    /// Takes one row.
-    ///
-    /// # Errors
-    /// Where the sink writes to a file that takes no more.
-    fn row(&mut self, row: &Row) -> std::io::Result<()>;
-
-    /// Takes an event of the program, at the time at which the command came to it, before the rows
-    /// from then on.
-    ///
-    /// # Errors
-    /// As [`Sink::row`].
-    fn event(&mut self, t_s: f64, event: &TimedEvent) -> std::io::Result<()> {
-        let _ = (t_s, event);
-        Ok(())
+    fn written(axes: usize, row: &Row) -> String {
+        let mut writer = TraceWriter::new(Vec::new(), axes).unwrap();
+        writer.row(row).unwrap();
+        String::from_utf8(writer.finish().unwrap()).unwrap()
     }
-}
 
-/// Keeps every row.
-impl Sink for Vec<Row> {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.push(*row);
-        Ok(())
+    #[test]
+    fn columns_are_the_documented_ones() {
+        let header = |axes| {
+            written(axes, &row([0.0; 8], 1, true))
+                .lines()
+                .next()
+                .unwrap()
+                .to_owned()
+        };
+        assert_eq!(
+            header(2),
+            "t_s,s_mm,line,feed_plan_mm_s,path_x_mm,cmd_x_mm,act_x_mm,torque_x_nm,path_y_mm,cmd_y_mm,act_y_mm,torque_y_nm,\
+             contour_error_mm,corrected_x_mm,corrected_y_mm,cutting"
+        );
+        assert!(
+            header(3)
+                .contains("act_z_mm,torque_z_nm,contour_error_mm,corrected_x_mm,corrected_y_mm,corrected_z_mm,cutting")
+        );
+    }
+
+    #[test]
+    fn setpoints_hold_time_and_corrected_position() {
+        let mut writer = SetpointWriter::new(Vec::new(), 3).unwrap();
+        writer
+            .row(&row([0.001, 2.0, 3.0, 4.0, 5.0, 0.1, -7.5, 1e-9], 1, true))
+            .unwrap();
+        assert_eq!(
+            String::from_utf8(writer.finish().unwrap()).unwrap(),
+            "t_s,x_mm,y_mm,z_mm\n0.001,0.1,-7.5,1e-9\n"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn every_number_reads_back_bit_for_bit(values: [f64; 8], line: u32, cutting: bool, axes in 2..=3_usize) {
+            let row = row(values, line, cutting);
+            let text = written(axes, &row);
+            let fields: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
+            let mut expected = vec![row.t_s, row.s_mm, f64::from(line), row.feed_plan_mm_s];
+            for axis in 0..axes {
+                expected.extend([row.path_mm[axis], row.cmd_mm[axis], row.act_mm[axis], row.torque_nm[axis]]);
+            }
+            expected.push(row.contour_error_mm);
+            expected.extend(&row.corrected_mm[..axes]);
+            expected.push(f64::from(u8::from(cutting)));
+            prop_assert_eq!(fields.len(), expected.len());
+            for (field, value) in fields.iter().zip(expected) {
+                let back: f64 = field.parse().unwrap();
+                // NaN has many bit patterns and one name.
+                prop_assert!(back.to_bits() == value.to_bits() || back.is_nan() && value.is_nan(), "{} became {}", value, field);
+            }
+        }
     }
 }

@@ -5,7 +5,7 @@ use feedwright_control::position_gains_1_s;
 use feedwright_sim::machine_keys as keys;
 use feedwright_sim::toml_file::Key;
 use feedwright_sim::toml_file::key::Value;
-use feedwright_sim::{BUILT_IN_MACHINES, Machine, Plant, Transmission};
+use feedwright_sim::{Machine, Plant, Transmission};
 use proptest::prelude::*;
 
 /// Mechanics periods in a second of a case, at the most: a run of all cases is to end.
@@ -160,47 +160,6 @@ fn the_values_lie_within_their_ranges_and_at_their_ends() {
             values.contains(&least) && values.contains(&most),
             "{}",
             key.name
-        );
-    }
-}
-
-/// A second of motion on a slope, with what `at` does to the plant in its middle.
-fn measured(machine: &Machine, at: impl Fn(&mut Plant<2>)) -> Vec<[f64; 2]> {
-    let mut plant = Plant::<2>::new(machine, [0.0; 2]);
-    let periods = (1.0 / machine.period.servo_s) as usize;
-    let step = |n: usize| {
-        if n == periods / 2 {
-            at(&mut plant);
-        }
-        plant
-            .step([10.0, -7.0].map(|mm_s: f64| mm_s * n as f64 * machine.period.servo_s))
-            .measured_mm
-    };
-    (0..periods).map(step).collect()
-}
-
-#[test]
-fn a_machine_that_becomes_itself_goes_on_as_it_was_and_one_that_becomes_another_does_not() {
-    for (name, _) in BUILT_IN_MACHINES {
-        let machine = Machine::load(name.as_ref()).unwrap();
-        if machine.axis_count() < 2 {
-            continue;
-        }
-        let mut heavy = machine.clone();
-        heavy
-            .axes
-            .iter_mut()
-            .for_each(|axis| axis.inertia_kg_m2 *= 2.0);
-        let same = measured(&machine, |_| {});
-        assert_eq!(
-            same,
-            measured(&machine, |plant| plant.change_to(&machine)),
-            "{name}"
-        );
-        assert_ne!(
-            same,
-            measured(&machine, |plant| plant.change_to(&heavy)),
-            "{name}"
         );
     }
 }

@@ -60,15 +60,6 @@ impl CommandQueue {
         self.periods
     }
 
-    /// Returns the same commands, late by another number of servo periods.
-    #[must_use]
-    pub fn with_periods(self, periods: usize) -> Self {
-        Self {
-            periods: periods.min(MAX_COMMAND_PERIODS),
-            ..self
-        }
-    }
-
     /// Sends a command. Returns the one that the position loop has now.
     #[inline]
     pub fn pass(&mut self, command: f64) -> f64 {

@@ -223,7 +223,7 @@ pub struct Number {
     /// zero.
     pub optional: bool,
     /// First format of a model block that has this number. An earlier block leaves it zero.
-    pub format: u32,
+    pub(crate) format: u32,
     /// Field of the axis.
     pub of: fn(&mut Parameters) -> &mut f64,
 }

@@ -50,13 +50,13 @@ pub struct TransmissionModel {
     /// Inverse inertia of the table's side, 1/(kg m2).
     pub inverse_table_inertia: f64,
     /// Stiffness, N m/rad.
-    pub stiffness_nm_rad: f64,
+    pub(crate) stiffness_nm_rad: f64,
     /// Damping in contact, N m s/rad.
-    pub damping_nm_s: f64,
+    pub(crate) damping_nm_s: f64,
     /// Half of the backlash, rad.
-    pub half_gap_rad: f64,
+    pub(crate) half_gap_rad: f64,
     /// Resonance of the table on the screw while the motor is held, rad/s.
-    pub resonance_rad_s: f64,
+    pub(crate) resonance_rad_s: f64,
 }
 
 /// Largest phase of the oscillation of the two masses in a mechanics period, rad: above 2 the

@@ -38,7 +38,7 @@ pub struct ContourIdentifier<const N: usize> {
 #[derive(Debug, Clone, Copy)]
 pub struct Forward<const N: usize> {
     /// f(net_j).
-    pub hidden: [f64; HIDDEN],
+    pub(crate) hidden: [f64; HIDDEN],
     /// eps_hat, scaled.
     pub error: [f64; N],
 }

@@ -76,14 +76,14 @@ pub struct CommonArgs {
     ///
     /// auto colors messages on a terminal, unless NO_COLOR is set or TERM is dumb.
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE, hide_short_help = true)]
-    pub color: ColorWhen,
+    pub(crate) color: ColorWhen,
     /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The pages of
     /// `run` and `advise` follow; JSON and figures stay metric.
     ///
     /// Contour errors are in thousandths with three decimals: drawings state tolerances in
     /// thousandths, and the last decimal is a millionth, about 0.025 um.
     #[arg(long, global = true, value_name = "UNITS", value_enum, default_value_t = LengthUnits::Metric, help_heading = EVERYWHERE)]
-    pub units: LengthUnits,
+    pub(crate) units: LengthUnits,
     /// Print help with all options
     #[arg(long, global = true, action = ArgAction::HelpLong, help_heading = EVERYWHERE)]
     help_all: Option<bool>,

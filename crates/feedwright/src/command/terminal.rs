@@ -19,7 +19,7 @@ const LEAST_COLUMNS: usize = 40;
 
 /// Setting of `--color`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum ColorWhen {
+pub(crate) enum ColorWhen {
     /// Color on a terminal, unless NO_COLOR is set or TERM is dumb
     #[default]
     Auto,
@@ -31,7 +31,7 @@ pub enum ColorWhen {
 
 /// Units of lengths and speeds that are printed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum LengthUnits {
+pub(crate) enum LengthUnits {
     /// mm, um, mm/min
     #[default]
     Metric,

@@ -42,13 +42,13 @@ pub struct AdviseJob {
     /// The controller of the cut with feedback.
     pub controller: &'static Entry,
     /// Settings of the controller.
-    pub choices: Choices,
+    pub(crate) choices: Choices,
     /// The geometry that is compensated, in the corrected program and in the cut with feedback.
     pub(crate) compensation: GeometryChoice,
     /// Largest contour error, um.
     pub(crate) tolerance_um: f64,
     /// Settings of the reader.
-    pub reader: Settings,
+    pub(crate) reader: Settings,
     /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact.
     /// As [`CorrectJob::file_error`](super::CorrectJob).
     pub file_error: f64,
@@ -165,7 +165,7 @@ pub struct Advice {
     pub assumed: Option<FileAssumption>,
     /// Warnings of the reader.
     #[serde(skip)]
-    pub(crate) warnings: Vec<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Advice {

@@ -44,7 +44,7 @@ pub struct ExportedFigures {
     /// Motions of the program.
     pub blocks: u64,
     /// True where the loop stayed stable in all cuts.
-    pub completed: bool,
+    pub(crate) completed: bool,
     /// Number of the cut with the largest error.
     #[serde(skip)]
     worst_phase: usize,

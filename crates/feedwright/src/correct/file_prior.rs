@@ -60,7 +60,7 @@ pub struct FileAssumption {
     /// Values that are not the values of the file.
     pub(crate) values: Vec<AssumedValue>,
     /// Values in which the axes differ by more than chance.
-    pub different: Vec<&'static str>,
+    pub(crate) different: Vec<&'static str>,
 }
 
 /// A machine file with what is uncertain in it.

@@ -65,13 +65,13 @@ pub(crate) struct LearnedLog {
     /// Program that was cut.
     pub(crate) program: CutProgram,
     /// RMS distance of its command from the original program, um.
-    pub off_um: f64,
+    pub(crate) off_um: f64,
     /// Time between samples, s.
     pub(crate) sample_time_s: f64,
     /// Duration of the cut, s.
     pub(crate) time_s: f64,
     /// Time that the original is planned to take, s.
-    pub planned_s: f64,
+    pub(crate) planned_s: f64,
     /// Measured RMS contour error, um.
     pub(crate) rms_um: f64,
     /// Largest measured contour error, um.
@@ -80,7 +80,7 @@ pub(crate) struct LearnedLog {
     /// position, um.
     pub(crate) model_missed_um: f64,
     /// The same distance with the values that the logs show, um.
-    pub missed_um: f64,
+    pub(crate) missed_um: f64,
 }
 
 /// The error that the next cut is predicted to have at the encoders.
@@ -106,7 +106,7 @@ pub struct LearnedOutcome {
     /// RMS across the path of the error that repeats beside the model and is corrected, um.
     pub(crate) repeats_um: f64,
     /// RMS across the path of the error that does not repeat, um.
-    pub rest_um: f64,
+    pub(crate) rest_um: f64,
     /// The next cut, where a program was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub predicted: Option<PredictedCut>,

@@ -48,7 +48,7 @@ pub struct CorrectOutcome {
     /// Number of pieces in which the program was corrected.
     pub pieces: usize,
     /// Longest rest that was inserted, s.
-    pub dwell_s: f64,
+    pub(crate) dwell_s: f64,
     /// True if a finished piece could not be kept for another run.
     #[serde(skip)]
     pub is_lost: bool,

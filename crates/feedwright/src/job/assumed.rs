@@ -56,7 +56,7 @@ impl Job {
         Assumptions {
             machine: self.machine.name.clone(),
             description: self.machine.description.clone(),
-            machine_file: self.machine_file.clone(),
+            machine_file: self.request.machine_file(),
             machine_source: self.machine.source.clone(),
             position_gains_1_s: ["X", "Y", "Z"]
                 .into_iter()

@@ -166,10 +166,9 @@ impl Job {
                 watch,
             )?);
             cuts.geometry = self.compensation.reported(&self.machine, &spread);
-            if let (Some(model), Some(date)) =
-                (self.model.as_ref().filter(|_| judged), &self.learned_on)
-            {
-                cuts.learned = self.learned(model, &*controller, date);
+            let given = self.model.as_ref().filter(|_| judged);
+            if let Some(model) = given.filter(|_| self.request.learns) {
+                cuts.learned = self.learned(model, &*controller);
             }
         }
         Ok(cuts)
@@ -189,7 +188,6 @@ impl Job {
         &self,
         model: &Model,
         controller: &dyn Controller<N>,
-        date: &str,
     ) -> Option<Model> {
         let axes = IdentifiedAxes {
             periods: self.machine.period.periods(),
@@ -201,7 +199,7 @@ impl Job {
             axes,
             Origin {
                 source,
-                date: date.to_owned(),
+                date: self.today.clone(),
             },
         )
     }

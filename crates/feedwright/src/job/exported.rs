@@ -21,10 +21,10 @@ impl Job {
             return Ok(None);
         };
         let job = CorrectJob {
-            feed_mm_s: self.feed_mm_s,
+            feed_mm_s: self.request.feed_mm_s,
             reader: self.reader.clone(),
             compensation: self.compensation.clone(),
-            file_error: self.file_error,
+            file_error: self.request.file_error_part(),
             ..CorrectJob::new(self.program.clone(), self.machine.clone(), target)
         };
         let outcome = job.run(watch)?;

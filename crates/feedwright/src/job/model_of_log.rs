@@ -2,9 +2,11 @@
 
 use std::borrow::Cow;
 
+use feedwright_control::IdentifierKind;
 use feedwright_sim::Watch;
 
 use super::{CheckedJob, Job, JobError};
+use crate::recorded_model::recorded_model;
 
 impl CheckedJob<'_> {
     /// The job with the model from the log, and what the log does not determine well enough, in
@@ -14,9 +16,15 @@ impl CheckedJob<'_> {
         watch: &dyn Watch,
     ) -> Result<(Cow<'_, Job>, Vec<String>), JobError> {
         let job = &*self.job;
-        let log = job.model_of_log.as_ref().filter(|_| job.model.is_none());
-        let found = log.map(|log| log.model(self.axes, (job.controller, &job.choices), watch));
-        let Some(found) = found.transpose()?.flatten() else {
+        let uses_log = job.controller.identifier == Some(IdentifierKind::Axes)
+            && !job.request.exact_settings
+            && job.model.is_none();
+        let fitting = job.request.band.into();
+        let found = uses_log.then(|| {
+            let (entry, date) = ((job.controller, &job.choices), job.today.clone());
+            recorded_model(&job.recorder, self.axes, entry, date, fitting, watch)
+        });
+        let Some(found) = found.transpose()? else {
             return Ok((Cow::Borrowed(job), Vec::new()));
         };
         let job = Job {

@@ -95,7 +95,7 @@ impl Job {
     where
         Entry: Make<N>,
     {
-        let Some(tolerance_um) = self.tolerance_um.filter(|_| self.fastest) else {
+        let Some(tolerance_um) = self.request.tolerance_um.filter(|_| self.request.fastest) else {
             return Ok(None);
         };
         watch.begin("planning the least time", 1);
@@ -111,10 +111,10 @@ impl Job {
     where
         Entry: Make<N>,
     {
-        let shares = !self.fastest
+        let shares = !self.request.fastest
             && self.reference.is_none()
             && Stages::of(&self.machine).planner.needs_axes;
-        let Some(tolerance_um) = self.tolerance_um.filter(|_| shares) else {
+        let Some(tolerance_um) = self.request.tolerance_um.filter(|_| shares) else {
             return Ok(None);
         };
         watch.begin("looking for the tolerance of the path", 1);
@@ -203,6 +203,9 @@ impl Job {
             .program
             .reader(self.reader.clone())?
             .map_while(Result::ok);
-        Ok(with_feeds(steps, self.feed_mm_s.into_iter().cycle()))
+        Ok(with_feeds(
+            steps,
+            self.request.feed_mm_s.into_iter().cycle(),
+        ))
     }
 }

@@ -87,7 +87,7 @@ impl Job {
                 format!("{}: {}", target.name, target.about),
             ));
         }
-        if let Some(feed_mm_s) = self.feed_mm_s {
+        if let Some(feed_mm_s) = self.request.feed_mm_s {
             settings.push(value(
                 "Feedrate, in place of the programmed",
                 format!("{feed_mm_s} mm/s"),
@@ -102,7 +102,7 @@ impl Job {
             geometry: None,
             program: self.listing(&runs)?,
             circles,
-            tolerance_um: self.tolerance_um,
+            tolerance_um: self.request.tolerance_um,
             limits: None,
             axis_limits: drawn_limits(&self.machine),
             band: None,
@@ -113,7 +113,7 @@ impl Job {
     /// Returns true if the binding limits along the path are to be found: on machines that are
     /// planned axis by axis.
     fn shows_limits(&self) -> bool {
-        self.with_limits && Stages::of(&self.machine).planner.needs_axes
+        self.request.with_limits && Stages::of(&self.machine).planner.needs_axes
     }
 
     /// Looks at the plan of a cut for the page, where that is the plan of the program.

@@ -51,7 +51,7 @@ impl JobOutcome {
             version: env!("CARGO_PKG_VERSION"),
             part: &report.part,
             reference: job.reference.as_ref().map(Program::name),
-            tolerance_um: job.tolerance_um,
+            tolerance_um: job.request.tolerance_um,
             path_tolerance_um: self.path_um,
             within_tolerance: self.within_tolerance,
             simulated: true,

@@ -1,14 +1,126 @@
-//! The machine file of an identified machine: each value with its interval, or that it is assumed.
+//! The machine of an identified log, by its values or as a machine file, which has the interval of
+//! each value beside it, or that it is assumed.
 
 use std::fmt::Write as _;
 
 use feedwright_gcode::visible;
 use feedwright_ident::{FoundAxis, SERVO_MECHANICS, servo_period_s};
-use feedwright_sim::MACHINE_FORMAT;
-use feedwright_sim::toml_file::quoted;
+use feedwright_plan::Durations;
+use feedwright_sim::toml_file::key::Value;
+use feedwright_sim::toml_file::{Key, quoted};
+use feedwright_sim::{
+    Axis, Limits, MACHINE_FORMAT, Machine, MachineError, Noise, Period, Squareness, Transmission,
+    machine_keys,
+};
 
 use super::LogIdentified;
 use super::axis_keys::{AxisKey, axis_keys, remark};
+
+/// Jump of the velocity at a corner that is assumed, mm/s.
+const ASSUMED_CORNER_JUMP_MM_S: f64 = 0.0;
+/// Deviation of a correction that is assumed, mm.
+const ASSUMED_MAX_DEVIATION_MM: f64 = 0.5;
+
+impl LogIdentified {
+    /// Highest speed, mm/s, and acceleration, mm/s2, of the log.
+    fn limits(&self) -> [f64; 2] {
+        let most = |i: usize| {
+            let axes = self.machine.axes.iter();
+            axes.map(|axis| axis.most[i]).fold(0.0, f64::max)
+        };
+        [most(0).clamp(0.01, 1e4), most(1).clamp(0.1, 1e6)]
+    }
+
+    /// The axis of the log that each axis of the machine is as; a machine has x and y, so that the
+    /// first of the log stands for a missing one.
+    fn axes_of_machine(&self) -> impl Iterator<Item = &FoundAxis> {
+        let places = self.places();
+        let first = places.iter().flatten().next().copied().unwrap_or(0);
+        let axis = move |(i, place): (usize, Option<usize>)| {
+            let place = place.or((i < 2).then_some(first))?;
+            self.machine.axes.get(place)
+        };
+        places.into_iter().enumerate().filter_map(axis)
+    }
+
+    /// Description of the machine.
+    fn description(&self) -> String {
+        format!("axes identified from {}", visible(&self.job.name))
+    }
+
+    /// Source of its values.
+    fn source(&self) -> String {
+        let (log, samples) = (visible(&self.job.name), self.log.time_s.len());
+        format!("{log}, {}, {samples} samples", self.log.format)
+    }
+}
+
+/// The machine, with the values that [`machine_text`] writes.
+///
+/// # Errors
+/// Values that no machine file may have.
+pub(crate) fn identified_machine(
+    identified: &LogIdentified,
+    name: &str,
+) -> Result<Machine, MachineError> {
+    let servo_s = servo_period_s(identified.machine.sample_s);
+    let [speed_mm_s, accel_mm_s2] = identified.limits();
+    let machine = Machine {
+        name: name.to_owned(),
+        description: identified.description(),
+        source: identified.source(),
+        period: Period {
+            servo_s,
+            mechanics_s: servo_s / f64::from(SERVO_MECHANICS),
+            mechanics_per_servo: SERVO_MECHANICS,
+        },
+        limits: Limits {
+            rapid_mm_s: speed_mm_s,
+            max_feed_mm_s: speed_mm_s,
+            tangential_accel_mm_s2: accel_mm_s2,
+            normal_accel_mm_s2: accel_mm_s2,
+            corner_jump_mm_s: ASSUMED_CORNER_JUMP_MM_S,
+            max_deviation_mm: ASSUMED_MAX_DEVIATION_MM,
+            ..Limits::default()
+        },
+        axes: identified
+            .axes_of_machine()
+            .map(|found| axis(found, servo_s))
+            .collect(),
+        plc: Durations::default(),
+        plc_events: Vec::new(),
+        geometry: Squareness::default(),
+        noise: Noise::default(),
+        compensated: None,
+        tool: None,
+    };
+    machine.checked("the machine of the log")
+}
+
+/// An axis with the values of its keys.
+fn axis(found: &FoundAxis, servo_s: f64) -> Axis {
+    let [keys, of_screw] = axis_keys(found, servo_s);
+    let screw = || of_values::<Transmission>(machine_keys::TRANSMISSION, &of_screw);
+    Axis {
+        transmission: (!of_screw.is_empty()).then(screw),
+        ..of_values(machine_keys::AXIS, &keys)
+    }
+}
+
+/// A part of a machine with the values of keys.
+fn of_values<T: Default>(table: &[Key<T>], keys: &[AxisKey]) -> T {
+    let mut part = T::default();
+    for AxisKey { name, value, .. } in keys {
+        if let Some(Key {
+            value: Value::Number { set, .. },
+            ..
+        }) = table.iter().find(|key| key.name == *name)
+        {
+            set(&mut part, *value);
+        }
+    }
+    part
+}
 
 /// The text of a machine file.
 pub fn machine_text(identified: &LogIdentified, name: &str) -> String {
@@ -45,14 +157,7 @@ pub fn machine_text(identified: &LogIdentified, name: &str) -> String {
 /// Returns the text before the axes.
 fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
     let machine = &identified.machine;
-    let most = |i: usize| {
-        machine
-            .axes
-            .iter()
-            .map(|axis| axis.most[i])
-            .fold(0.0, f64::max)
-    };
-    let (speed_mm_s, accel_mm_s2) = (most(0).clamp(0.01, 1e4), most(1).clamp(0.1, 1e6));
+    let [speed_mm_s, accel_mm_s2] = identified.limits();
     let mut text = String::new();
     // A name that breaks the line would not stay in its comment.
     let log = visible(&identified.job.name);
@@ -66,17 +171,9 @@ fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
     let _ = writeln!(text, "\nformat = {MACHINE_FORMAT}\nname = {}", quoted(name));
     let _ = writeln!(
         text,
-        "description = {}",
-        quoted(&format!("axes identified from {log}"))
-    );
-    let _ = writeln!(
-        text,
-        "source = {}",
-        quoted(&format!(
-            "{log}, {}, {} samples",
-            identified.log.format,
-            identified.log.time_s.len()
-        ))
+        "description = {}\nsource = {}",
+        quoted(&identified.description()),
+        quoted(&identified.source())
     );
     let _ = writeln!(
         text,
@@ -102,7 +199,7 @@ fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
     );
     let _ = writeln!(
         text,
-        "corner_jump_mm_s = 0 # assumed\nmax_deviation_mm = 0.5 # assumed"
+        "corner_jump_mm_s = {ASSUMED_CORNER_JUMP_MM_S} # assumed\nmax_deviation_mm = {ASSUMED_MAX_DEVIATION_MM} # assumed"
     );
     text
 }

@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::FromLog;
+use super::KeptFromLog;
 use crate::store::content_key;
 
 /// The lines.
@@ -39,7 +39,7 @@ fn beginning(content: &Value) -> Option<String> {
 }
 
 /// Returns the result that is shipped with the program for a content.
-pub(super) fn from_log(content: &Value) -> Option<FromLog> {
+pub(super) fn from_log(content: &Value) -> Option<KeptFromLog> {
     let beginning = beginning(content)?;
     let BuiltInLog {
         text,
@@ -55,7 +55,7 @@ pub(super) fn from_log(content: &Value) -> Option<FromLog> {
         Some(lines.join("\n"))
     };
     let fitting = fitting.iter().map(with).collect::<Option<_>>()?;
-    Some(FromLog {
+    Some(KeptFromLog {
         text,
         warnings,
         fitting,
@@ -64,7 +64,7 @@ pub(super) fn from_log(content: &Value) -> Option<FromLog> {
 
 /// The line of a content. A machine that fits as well has the lines of the text with other values;
 /// one that has not is left out.
-pub(super) fn line(content: &Value, from_log: &FromLog) -> String {
+pub(super) fn line(content: &Value, from_log: &KeptFromLog) -> String {
     let lines: Vec<&str> = from_log.text.split('\n').collect();
     let changes = |fits: &String| {
         let of_fits: Vec<&str> = fits.split('\n').collect();

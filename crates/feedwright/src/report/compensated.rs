@@ -15,10 +15,10 @@ pub struct CompensatedGeometry {
     /// Standard deviation of the tool across the path that follows from the standard deviations of
     /// the file: root mean square over the cut, um.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub spread_rms_um: Option<f64>,
+    pub(crate) spread_rms_um: Option<f64>,
     /// Largest value of that standard deviation over the cut, um.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub spread_max_um: Option<f64>,
+    pub(crate) spread_max_um: Option<f64>,
 }
 
 impl CompensatedGeometry {

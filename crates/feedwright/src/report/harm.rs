@@ -87,7 +87,7 @@ impl ErrorChange {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Harm {
     /// Name of the error, as in tables.
-    pub what: &'static str,
+    pub(crate) what: &'static str,
     /// The error it is compared with, um.
     pub(crate) before_um: f64,
     /// The error, um.

@@ -33,7 +33,7 @@ const LEVELS: u32 = 4;
 #[derive(Debug, Clone, Default)]
 pub struct LimitBand {
     /// Names of the limits.
-    pub names: Vec<String>,
+    pub(crate) names: Vec<String>,
     /// The plan.
     pub(crate) along: BindingAlong,
 }

@@ -13,7 +13,7 @@ use super::worst::WorstPlace;
 /// without feedback.
 pub(crate) const AS_EXPORTED: &str = "as exported";
 
-/// Part that a run has in a report. JSON has [`RunSummary::role`] as `measured`.
+/// Part that a run has in a report. JSON has `RunSummary::role` as `measured`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Role {
     /// Cut that the others are compared with.
@@ -119,16 +119,16 @@ impl DriveLimits {
 /// Largest shares of the drive limits that a cut uses, each at the moment and on the axis of its
 /// maximum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct CommandShares {
+pub(crate) struct CommandShares {
     /// Acceleration of the command.
-    pub acceleration: CommandShare,
+    pub(crate) acceleration: CommandShare,
     /// Torque.
     pub(crate) torque: CommandShare,
 }
 
 /// A share of the limit of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct CommandShare {
+pub(crate) struct CommandShare {
     /// X, Y or Z.
     pub(crate) axis: &'static str,
     /// 1 is the limit.
@@ -147,13 +147,13 @@ const MOST_PERCENT: f64 = 200.0;
 
 /// Deviation of the tool speed from the programmed feedrate F, over the cutting time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FeedShares {
+pub(crate) struct FeedShares {
     /// Share of the time below 0.8 of F.
     pub(crate) slow_share: f64,
     /// Share of the time above 1.2 of F.
     pub(crate) fast_share: f64,
     /// Largest speed, as a fraction of F.
-    pub largest: f64,
+    pub(crate) largest: f64,
 }
 
 impl RunSummary {
@@ -189,7 +189,7 @@ pub struct RunSummary {
     pub axes: usize,
     /// Part that the run has in the report.
     #[serde(rename = "measured", serialize_with = "is_measured")]
-    pub role: Role,
+    pub(crate) role: Role,
     /// Outcome of the run.
     pub outcome: Outcome,
     /// Time and reason of the last disengagement by the supervisor.
@@ -226,14 +226,14 @@ pub struct RunSummary {
     pub(crate) max_command_accel_mm_s2: f64,
     /// Shares of the drive limits that the command uses; none for a log.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub command_share: Option<CommandShares>,
+    pub(crate) command_share: Option<CommandShares>,
     /// Largest torque of each axis, N m; none for a log: torques of logs are not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) peak_torque_nm: Option<[f64; 3]>,
     /// Deviation of the tool speed from the programmed feedrate; none if that is not known, as for
     /// a log.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub feed: Option<FeedShares>,
+    pub(crate) feed: Option<FeedShares>,
     /// Arc length that was cut, mm.
     pub(crate) cutting_length_mm: f64,
     /// Time during which the tool cut, s.

@@ -22,7 +22,7 @@ pub fn escaped(text: &str) -> String {
 }
 
 /// Formats a number with three significant digits, at most two decimals, and a true minus sign.
-pub fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }

@@ -17,9 +17,9 @@ use crate::text::input;
 
 /// One tool.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Tool {
+pub(crate) struct Tool {
     /// Offsets of X Y Z A B C U V W, mm and degrees.
-    pub offset: [f64; 9],
+    pub(crate) offset: [f64; 9],
     /// Diameter, mm.
     pub(crate) diameter_mm: f64,
     /// Wear of length and radius, mm, set by `G10 L11` and `L13` on Fanuc and Haas. `offset` and
@@ -30,9 +30,9 @@ pub struct Tool {
     /// Back angle of a lathe tool, degrees.
     pub(crate) back_angle_deg: f64,
     /// Orientation of a lathe tool, 0 to 9.
-    pub orientation: u8,
+    pub(crate) orientation: u8,
     /// Pocket of the changer.
-    pub pocket: u32,
+    pub(crate) pocket: u32,
 }
 
 /// All tools by number.

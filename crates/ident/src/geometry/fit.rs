@@ -13,16 +13,14 @@
 //! variance of the backlash.
 
 use feedwright_sim::{
-    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused,
-    MeasuredSet, NUISANCES, Observation, RankedLeastSquares, f_exceeded,
+    AXIS_NAMES, Axis, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin,
+    GeometryRefused, MeasuredSet, NUISANCES, Observation, RankedLeastSquares, f_exceeded,
 };
 use miette::Diagnostic;
 use thiserror::Error;
 
 use super::circularity::Circularity;
-use super::readings::{
-    KnownScrew, WINDUP_UNCERTAINTY, binned, repeatability_um, table_of, take_off_windup,
-};
+use super::readings::{WINDUP_UNCERTAINTY, binned, repeatability_um, table_of, take_off_windup};
 use super::unknowns::{PAIRS, Unknown, UnknownKind, angle, shows_turns, unknowns};
 use crate::model::version;
 
@@ -85,9 +83,9 @@ pub struct FoundSet {
     /// none where each was measured once.
     pub repeatability_um: Option<f64>,
     /// Factor tau by which its residuals contain less information than independent ones.
-    pub correlation: f64,
+    pub(crate) correlation: f64,
     /// Circular deviations of a ball bar, as it was read.
-    pub circularity: Option<Circularity>,
+    pub(crate) circularity: Option<Circularity>,
     /// Nuisances: name, value, unit.
     pub nuisances: Vec<(&'static str, f64, &'static str)>,
 }
@@ -113,16 +111,17 @@ const ROUNDS: usize = 3;
 /// Least noise of a set, um: an exact measurement does not get infinite weight.
 const LEAST_NOISE_UM: f64 = 1e-3;
 
-/// The geometry of a machine with these screws; an axis without screw is not there.
+/// The geometry of a machine with these axes. Of an axis, its lead is used, and its lost motion by
+/// friction that winds the screw up: the model of the axis predicts it, and it is no geometry.
 ///
 /// # Errors
 /// See `NoGeometry`.
 pub fn fit_geometry(
     sets: Vec<MeasuredSet>,
-    screws: [Option<KnownScrew>; 3],
+    axes: &[Axis],
     source: &str,
 ) -> Result<FoundGeometry, NoGeometry> {
-    let mut fit = GeometryFit::new(sets, screws)?;
+    let mut fit = GeometryFit::new(sets, axes)?;
     fit.solve()?;
     fit.drop_pitch_of_noise()?;
     let mut found = fit.found(source)?;
@@ -147,28 +146,23 @@ struct GeometryFit {
 }
 
 impl GeometryFit {
-    fn new(
-        mut sets: Vec<MeasuredSet>,
-        screws: [Option<KnownScrew>; 3],
-    ) -> Result<Self, NoGeometry> {
+    fn new(mut sets: Vec<MeasuredSet>, of_machine: &[Axis]) -> Result<Self, NoGeometry> {
+        let windup = |axis: &Axis| 1e3 * axis.hidden_windup_mm();
+        let windup_um = [0, 1, 2].map(|axis| of_machine.get(axis).map_or(0.0, windup));
         let circularity = sets.iter().map(Circularity::of).collect();
         let mut notes = Vec::new();
-        for (axis, screw) in screws
-            .iter()
-            .enumerate()
-            .filter_map(|(axis, screw)| Some((axis, screw.as_ref()?)))
-        {
-            if screw.windup_um > 0.0 {
+        for (axis, windup_um) in windup_um.into_iter().enumerate() {
+            if windup_um > 0.0 {
                 sets.iter_mut()
-                    .for_each(|set| take_off_windup(set, axis, screw.windup_um));
-                let um = feedwright_sim::to_four_digits(screw.windup_um);
+                    .for_each(|set| take_off_windup(set, axis, windup_um));
+                let um = feedwright_sim::to_four_digits(windup_um);
                 notes.push(format!(
                     "backlash {}: without {um} um by which friction winds the screw of the machine file up",
                     AXIS_NAMES[axis]
                 ));
             }
         }
-        let leads_mm = screws.map(|screw| screw.map(|screw| screw.lead_mm));
+        let leads_mm = [0, 1, 2].map(|axis| of_machine.get(axis).map(|axis| axis.lead_mm_per_rev));
         let repeatability_um = sets.iter().map(repeatability_um).collect();
         let least_lead_mm = leads_mm
             .iter()
@@ -216,8 +210,7 @@ impl GeometryFit {
         let unknowns = unknowns(&axes, &planes, turns);
         let solution = RankedLeastSquares::default();
         let correlation = vec![1.0; sets.len()];
-        let windup_std_um =
-            screws.map(|screw| screw.map_or(0.0, |screw| WINDUP_UNCERTAINTY * screw.windup_um));
+        let windup_std_um = windup_um.map(|windup_um| WINDUP_UNCERTAINTY * windup_um);
         Ok(Self {
             sets,
             seen,

@@ -5,30 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_sim::{GeometryFile, Machine, MeasuredSet};
-
-/// Known properties of the screw of an axis.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct KnownScrew {
-    /// Travel of a turn, mm.
-    pub lead_mm: f64,
-    /// Lost motion by friction that winds the screw up, um. A model of the axis with the screw
-    /// predicts it; it is no geometry.
-    pub windup_um: f64,
-}
-
-impl KnownScrew {
-    /// Returns the screw of an axis of a machine file; `None` where the machine has no such axis.
-    ///
-    /// The screw of stiffness k = Jt (2 pi f)^2 gives way by Fc / k in either direction.
-    pub fn of(machine: &Machine, axis: usize) -> Option<Self> {
-        let axis = machine.axes.get(axis)?;
-        Some(Self {
-            lead_mm: axis.lead_mm_per_rev,
-            windup_um: 1e3 * axis.hidden_windup_mm(),
-        })
-    }
-}
+use feedwright_sim::{GeometryFile, MeasuredSet};
 
 /// Part of the windup by which it may be wrong. Vibration carries the table over a part of its
 /// friction, and winds the screw up by less: on `router` by 5 to 6 of 67 um.

@@ -21,7 +21,7 @@ pub struct Training {
     /// Step of back-propagation in the first epoch.
     pub step: f64,
     /// Factor on the step from epoch to epoch.
-    pub decay: f64,
+    pub(crate) decay: f64,
     /// The weights start uniformly within this distance of zero.
     pub initial_weight: f64,
 }

@@ -54,6 +54,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
+use crate::log::Log;
 use axis_facts::AxisFacts;
 use axis_record::AxisRecord;
 use contour_scores::ContourScores;
@@ -140,25 +141,24 @@ pub fn servo_period_s(sample_s: f64) -> f64 {
     axis_run::periods(sample_s).0.servo_s
 }
 
-/// A torque column, in the unit of the file.
-pub(crate) type TorqueValues<'a> = Option<&'a [f64]>;
-
 /// Part of the work until it is known whether position loops have commands late.
 const WITHOUT_DELAY: f64 = 0.6;
 
-/// Identifies axes that were recorded together. `progress` receives the completed part of the
-/// work, 0 to 1, and returns whether to go on.
+/// Identifies the axes of a log. `progress` receives the completed part of the work, 0 to 1, and
+/// returns whether to go on.
 ///
 /// # Errors
 /// Fails if a record does not determine the model of an axis, or if `progress` ends the run.
 pub fn identify_machine(
-    records: &[AxisRecord<'_>],
-    torques: &[TorqueValues<'_>],
-    time_s: &[f64],
+    log: &Log,
     options: &GreyBoxOptions,
     mut progress: impl FnMut(f64) -> bool,
 ) -> Result<FoundMachine, NotFound> {
-    let first = records.first().ok_or(NotFound::NoAxis)?;
+    if log.axes.is_empty() {
+        return Err(NotFound::NoAxis);
+    }
+    let (time_s, sample_s) = (&log.time_s[..], log.sample_time_s);
+    let records = &AxisRecord::of(log)[..];
     let split = match &options.times_s {
         Some([fit, score]) => SampleSplit::by_times(records, time_s, fit.clone(), score.clone()),
         None => SampleSplit::by_motion(records),
@@ -178,7 +178,7 @@ pub fn identify_machine(
     let mut find = |facts: &[AxisFacts], from: f64, to: f64| -> Result<Vec<FoundAxis>, NotFound> {
         let axis = |(i, record): (usize, &AxisRecord<'_>)| {
             let facts = facts.get(i).copied().unwrap_or_default();
-            let torque = torques.get(i).copied().flatten();
+            let torque = log.axes[i].torque.as_deref();
             let done = |part: f64| from + (to - from) * (i as f64 + part) / records.len() as f64;
             model_fit::find(record, torque, &split, facts, &mut |part| {
                 progress(done(part))
@@ -200,7 +200,7 @@ pub fn identify_machine(
                 .collect();
             axes.iter_mut().for_each(|axis| {
                 axis.at_bounds
-                    .extend(command_delay::at_bound(axis, first.sample_s));
+                    .extend(command_delay::at_bound(axis, sample_s));
             });
         }
     }
@@ -209,6 +209,6 @@ pub fn identify_machine(
         axes,
         split,
         contour,
-        sample_s: first.sample_s,
+        sample_s,
     })
 }

@@ -18,7 +18,7 @@ use super::units::{PositionUnit, TimeUnit};
 
 /// A column by number, from 0, or by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ColumnChoice(pub String);
+pub(crate) struct ColumnChoice(pub(crate) String);
 
 /// The columns of one axis, as far as they are said.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -26,9 +26,9 @@ pub(crate) struct AxisChoice {
     /// Name of the axis.
     pub(crate) name: String,
     /// Its command.
-    pub command: Option<ColumnChoice>,
+    pub(crate) command: Option<ColumnChoice>,
     /// Its actual position.
-    pub actual: Option<ColumnChoice>,
+    pub(crate) actual: Option<ColumnChoice>,
     /// Its command minus its actual position, in place of the command.
     pub(crate) error: Option<ColumnChoice>,
     /// Its torque.
@@ -39,13 +39,13 @@ pub(crate) struct AxisChoice {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
     /// Column of the time.
-    pub time: Option<ColumnChoice>,
+    pub(crate) time: Option<ColumnChoice>,
     /// Axes; where there is one, the others of the file are left out.
     pub(crate) axes: Vec<AxisChoice>,
     /// Unit of the positions.
     pub(crate) position_unit: Option<PositionUnit>,
     /// Unit of the time.
-    pub time_unit: Option<TimeUnit>,
+    pub(crate) time_unit: Option<TimeUnit>,
     /// Time between samples, s.
     pub(crate) sample_time_s: Option<f64>,
 }
@@ -55,7 +55,7 @@ pub struct Columns {
 #[error("--columns: '{item}': {message}")]
 pub struct ColumnsError {
     /// The part of it that is wrong.
-    pub item: String,
+    pub(crate) item: String,
     /// Description of the error.
     pub(crate) message: String,
     /// Remedy.

@@ -39,7 +39,7 @@ pub(crate) struct LogColumn {
     /// One value per row; empty if the reader does not need the column.
     pub(crate) values: Vec<f64>,
     /// The first row whose value is no number, and what stands there.
-    pub not_a_number: Option<(usize, String)>,
+    pub(crate) not_a_number: Option<(usize, String)>,
 }
 
 impl LogTable {

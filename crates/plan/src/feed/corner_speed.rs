@@ -38,7 +38,7 @@ pub(crate) struct JointSide {
     /// Unit tangent at the joint.
     pub(crate) tangent: [f64; 3],
     /// Curvature at the joint, 1/mm.
-    pub curvature_1_mm: f64,
+    pub(crate) curvature_1_mm: f64,
     /// Length of the piece, mm.
     pub(crate) length_mm: f64,
 }

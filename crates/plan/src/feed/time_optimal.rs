@@ -12,6 +12,7 @@
 //!
 //! | File | What |
 //! |---|---|
+//! | `corner_deviation.rs` | how far a corner is cut: tolerance of a block, and where the tool stops |
 //! | `steps.rs` | steps of constant jerk per axis, and the place on the path that each stands for |
 //! | `track.rs` | the path from rest to rest, and an estimate of the speed on it |
 //! | `mesh.rs` | nodes on it |
@@ -21,9 +22,10 @@
 //! | `interior_point.rs` | its solution |
 //! | `settle.rs` | axes that the path leaves where they are |
 //! | `solved.rs` | from a mesh to a window, and from its solution to steps |
-//! | `path_deviation.rs` | what nodes do not bound |
+//! | `between_nodes.rs` | what the motion exceeds between nodes |
 //! | `rest_to_rest.rs` | straight, in closed form |
 
+mod corner_deviation;
 mod steps;
 mod track;
 mod mesh;
@@ -33,7 +35,7 @@ mod barrier;
 mod interior_point;
 mod settle;
 mod solved;
-mod path_deviation;
+mod between_nodes;
 mod rest_to_rest;
 use std::collections::VecDeque;
 
@@ -43,6 +45,7 @@ use super::{AxisMotion, FeedPlanner, Span, feed_mm_s};
 use crate::constraints::{AxisLimits, Constraints};
 use crate::path::Piece;
 use crate::vector::{angle, dot, norm, sub};
+use corner_deviation::{corner_deviation_mm, stops_at};
 use interior_point::SolverSettings;
 use mesh::{Mesh, MeshNode, MeshStart};
 use rest_to_rest::straight;
@@ -118,16 +121,6 @@ const FEED_MARGIN: f64 = 1e-7;
 /// The barrier at the end: 1e-5 of the time, and as near to the feedrate.
 const LAST_MU: f64 = 4e-6;
 
-/// Tolerance of exact path and exact stop, mm.
-const EXACT_MM: f64 = 1e-3;
-
-/// A turn of the tangent that is a corner in exact path mode, rad.
-const CORNER_RAD: f64 = 1e-3;
-
-/// Tolerance where neither program nor machine say one, mm, and the least.
-const DEFAULT_MM: f64 = 0.01;
-const LEAST_MM: f64 = 1e-5;
-
 /// Extent to which the first guess of a window follows the known motion. `UntilBraking` follows it
 /// until it brakes for its rest; from there an estimate goes on at speed. Where that has no
 /// solution, as with tolerances of 1 um, `AlmostToRest` follows it down to the last of its speed.
@@ -153,7 +146,7 @@ pub struct PlanCounts {
     /// Windows in whose place the motion went on along the one before.
     pub(crate) went_on: u64,
     /// Straight motions from rest to rest in place of a window.
-    pub straight: u64,
+    pub(crate) straight: u64,
     /// Newton steps of all solutions.
     pub(crate) iterations: u64,
 }
@@ -231,15 +224,6 @@ impl TimeOptimal {
     /// Returns the counts so far.
     pub const fn counts(&self) -> PlanCounts {
         self.counts
-    }
-
-    fn tolerance_of(&self, corner: Corner) -> f64 {
-        let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(DEFAULT_MM);
-        let tolerance_mm = match corner {
-            Corner::ExactStop | Corner::ExactPath => EXACT_MM.min(machine_mm),
-            Corner::Continuous { tolerance_mm, .. } => tolerance_mm.unwrap_or(machine_mm),
-        };
-        tolerance_mm.max(LEAST_MM)
     }
 
     fn step_s(&self) -> f64 {
@@ -452,7 +436,7 @@ impl TimeOptimal {
                 return None;
             }
             let soon = if ends { steps.len() } else { self.soon(&steps) };
-            let mut excesses = path_deviation::excesses(&self.track, &self.caps, &steps, soon);
+            let mut excesses = between_nodes::excesses(&self.track, &self.caps, &steps, soon);
             if round + 1 == ROUNDS {
                 excesses.retain(|excess| {
                     excess.tube_mm > LAST_OVER_MM
@@ -463,7 +447,7 @@ impl TimeOptimal {
             if excesses.is_empty() {
                 return Some((steps, ends));
             }
-            (nodes, feed_parts) = path_deviation::tightened(
+            (nodes, feed_parts) = between_nodes::tightened(
                 &nodes,
                 &feed_parts,
                 &steps,
@@ -663,11 +647,9 @@ impl FeedPlanner for TimeOptimal {
     fn push(&mut self, piece: &Piece, from_rest: bool) {
         let begin = piece.curve.at(0.0);
         let rests = from_rest
-            || match self.last {
-                None | Some((_, Corner::ExactStop)) => true,
-                Some((tangent, Corner::ExactPath)) => angle(tangent, begin.tangent) > CORNER_RAD,
-                Some((_, Corner::Continuous { .. })) => false,
-            };
+            || self
+                .last
+                .is_none_or(|(tangent, corner)| stops_at(corner, angle(tangent, begin.tangent)));
         // What is due is planned before more is known, however calls are spread.
         self.plan_due();
         if rests && !self.track.is_empty() {
@@ -683,7 +665,7 @@ impl FeedPlanner for TimeOptimal {
             self.from = MeshStart { s_mm: 0.0, motion };
         }
         let feed_mm_s = feed_mm_s(piece, &self.constraints);
-        let tolerance_mm = self.tolerance_of(piece.corner);
+        let tolerance_mm = corner_deviation_mm(piece.corner, self.constraints.path_tolerance_mm);
         self.track.push(self.pieces, piece, feed_mm_s, tolerance_mm);
         self.pieces += 1;
         self.last = Some((piece.curve.at(piece.length_mm).tangent, piece.corner));

@@ -219,12 +219,6 @@ impl Arc {
         offer(hi_mm);
         best.1
     }
-
-    /// Returns the distance of the end from `end_mm`, for tests.
-    #[cfg(test)]
-    pub(super) fn end_error_mm(&self, end_mm: Vector) -> f64 {
-        distance(self.at(self.length_mm).position_mm, end_mm)
-    }
 }
 
 /// The angle equal to `bearing` up to whole turns that lies between the bounds, the smallest if
@@ -296,6 +290,11 @@ mod tests {
     use super::*;
     use crate::vector::norm;
 
+    /// Distance of the end of an arc from a place, mm.
+    fn end_error_mm(arc: &Arc, end_mm: Vector) -> f64 {
+        distance(arc.at(arc.length_mm).position_mm, end_mm)
+    }
+
     #[test]
     fn recentering_puts_both_ends_on_the_circle() {
         // Quarter circle of radius 10 whose centre misses by 0.01 mm.
@@ -307,7 +306,7 @@ mod tests {
         );
         assert!((sweep - PI / 2.0).abs() < 2e-3);
         let arc = Arc::new([10.0, 0.0, 0.0], center, Plane::Xy, sweep, 0.0);
-        assert!(arc.end_error_mm([0.0, 10.0, 0.0]) < 1e-14);
+        assert!(end_error_mm(&arc, [0.0, 10.0, 0.0]) < 1e-14);
     }
 
     #[test]
@@ -315,7 +314,7 @@ mod tests {
         // Chord of 100 mm on a radius of 1e9 mm: the sagitta is 1.25 um.
         let (center, sweep) = recenter([100.0, 0.0], [50.0, 1e9], 1.0);
         let arc = Arc::new([0.0; 3], center, Plane::Xy, sweep, 0.0);
-        assert!(arc.end_error_mm([100.0, 0.0, 0.0]) < 1e-13);
+        assert!(end_error_mm(&arc, [100.0, 0.0, 0.0]) < 1e-13);
         let middle = arc.at(0.5 * arc.length_mm()).position_mm;
         assert!((middle[1] + 1.25e-6).abs() < 1e-14, "{middle:?}");
     }

@@ -9,7 +9,7 @@ use super::{
     AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys,
 };
 use crate::number::to_four_digits;
-use crate::toml_file::key::{read, read_all};
+use crate::toml_file::key::{in_range, read, read_all};
 use crate::toml_file::{Document, Fault, Table};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a
@@ -315,11 +315,35 @@ fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ax
     let mut axis: Axis = read(keys::AXIS, &mut table, faults);
     axis.transmission =
         transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
-    friction_within_step(&axis, period.mechanics_s, &table, faults);
-    position_gain(axis.kp_1_s, period.servo_s, &table, faults);
-    between_keys(&axis, &period, &table, faults);
+    between_values(&axis, &period, &|key| table.place(key), faults);
     table.finish(faults);
     axis
+}
+
+/// Place of a key in the text of a file.
+type Places<'p> = &'p dyn Fn(&str) -> Range<usize>;
+
+/// Checks what holds between the values of an axis beside the range of each.
+fn between_values(axis: &Axis, period: &Period, at: Places<'_>, faults: &mut Vec<Fault>) {
+    friction_within_step(axis, period.mechanics_s, at, faults);
+    position_gain(axis.kp_1_s, period.servo_s, at, faults);
+    between_keys(axis, period, at, faults);
+}
+
+/// Returns the faults of the axes of a machine that was made of values. The periods and the limits
+/// of all axes together are not checked.
+pub(super) fn faults_of_axes(machine: &Machine) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let period = &machine.period;
+    for axis in &machine.axes {
+        in_range(keys::AXIS, axis, &mut faults);
+        if let Some(screw) = &axis.transmission {
+            in_range(keys::TRANSMISSION, screw, &mut faults);
+            screw_within_step(screw, period.mechanics_s, &|_| 0..0, &mut faults);
+        }
+        between_values(axis, period, &|_| 0..0, &mut faults);
+    }
+    faults
 }
 
 /// Largest part of its speed that viscous friction may take from a mass in a mechanics period.
@@ -328,12 +352,7 @@ fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ax
 const MAX_FRICTION_STEP: f64 = 1.0;
 
 /// Refuses viscous friction B of a mass J that a step dt of the mechanics cannot follow: B dt / J.
-fn friction_within_step(
-    axis: &Axis,
-    mechanics_s: f64,
-    table: &Table<'_, '_>,
-    faults: &mut Vec<Fault>,
-) {
+fn friction_within_step(axis: &Axis, mechanics_s: f64, at: Places<'_>, faults: &mut Vec<Fault>) {
     // Friction acts on the table, where the screw gives.
     let mass_kg_m2 = axis.inertia_kg_m2 * axis.transmission.map_or(1.0, |screw| screw.table_share);
     let friction_nm_s = axis.viscous_friction_nm_s;
@@ -341,7 +360,7 @@ fn friction_within_step(
     if mechanics_s > MAX_FRICTION_STEP * fades_s {
         let most_nm_s = MAX_FRICTION_STEP * mass_kg_m2 / mechanics_s;
         faults.push(Fault {
-            at: table.place("viscous_friction_nm_s"),
+            at: at("viscous_friction_nm_s"),
             label: "too stiff for mechanics_s",
             message: format!(
                 "mechanics_s of {mechanics_s} s is too long for viscous_friction_nm_s of {friction_nm_s} N m s/rad and an inertia \
@@ -359,11 +378,11 @@ fn friction_within_step(
 
 /// Refuses a position gain that no position loop with this servo period has. A value with a fault
 /// of its own is NaN here.
-fn position_gain(kp_1_s: f64, servo_s: f64, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+fn position_gain(kp_1_s: f64, servo_s: f64, at: Places<'_>, faults: &mut Vec<Fault>) {
     let [least, most] = position_gains_1_s(servo_s);
     if kp_1_s < least || kp_1_s > most {
         faults.push(Fault {
-            at: table.place("kp_1_s"),
+            at: at("kp_1_s"),
             label: "no gain of a position loop",
             message: format!(
                 "kp_1_s is {kp_1_s} 1/s; with servo_s of {servo_s} s a position loop has {least} to {} 1/s",
@@ -382,7 +401,7 @@ fn position_gain(kp_1_s: f64, servo_s: f64, table: &Table<'_, '_>, faults: &mut 
 const MAX_DELAY_PERIODS: f64 = 60.0;
 
 /// An axis has all of its limits or none.
-fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+fn all_limits(axis: &Axis, at: Places<'_>, faults: &mut Vec<Fault>) {
     let limits = [
         axis.max_velocity_mm_s,
         axis.max_accel_mm_s2,
@@ -397,7 +416,7 @@ fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
     };
     if let ([first, ..], [_, ..]) = (&those(true)[..], &those(false)[..]) {
         faults.push(Fault {
-            at: table.place(first),
+            at: at(first),
             label: "not without the others",
             message: format!(
                 "{} given, {} missing: an axis has all three or none",
@@ -410,22 +429,22 @@ fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
 }
 
 /// Checks the conditions between the values of an axis.
-fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+fn between_keys(axis: &Axis, period: &Period, at: Places<'_>, faults: &mut Vec<Fault>) {
     for [(key, amount), (needed, over)] in axis.needs() {
         if amount > 0.0 && over == 0.0 {
             faults.push(Fault {
-                at: table.place(key),
+                at: at(key),
                 label: "says how much, but not over what",
                 message: format!("{key} is {amount}, and {needed} is 0 or not there"),
                 hint: Some(format!("give {needed} above 0, or leave {key} out")),
             });
         }
     }
-    all_limits(axis, table, faults);
+    all_limits(axis, at, faults);
     let (asymmetry_nm, coulomb_nm) = (axis.coulomb_asymmetry_nm, axis.coulomb_friction_nm);
     if asymmetry_nm.abs() > coulomb_nm {
         faults.push(Fault {
-            at: table.place("coulomb_asymmetry_nm"),
+            at: at("coulomb_asymmetry_nm"),
             label: "friction would drive",
             message: format!(
                 "coulomb_asymmetry_nm is {asymmetry_nm} N m; it must lie within the Coulomb friction, {coulomb_nm} N m each way"
@@ -450,7 +469,7 @@ fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mu
         // Rounding of decimal numbers is let pass.
         if delay_s > (1.0 + WHOLE_RATIO_TOLERANCE) * most_s {
             faults.push(Fault {
-                at: table.place(key),
+                at: at(key),
                 label: "too many servo periods",
                 message: format!(
                     "{key} is {delay_s} s; with servo_s of {} s it must be {most_s} s or less",
@@ -462,7 +481,7 @@ fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mu
     }
     if axis.jitter_s > period.servo_s {
         faults.push(Fault {
-            at: table.place("jitter_s"),
+            at: at("jitter_s"),
             label: "longer than servo_s",
             message: format!(
                 "jitter_s is {} s; it must lie within a servo period, {} s",
@@ -483,11 +502,23 @@ fn transmission(
     faults: &mut Vec<Fault>,
 ) -> Transmission {
     let transmission: Transmission = read(keys::TRANSMISSION, &mut table, faults);
+    screw_within_step(&transmission, mechanics_s, &|key| table.place(key), faults);
+    table.finish(faults);
+    transmission
+}
+
+/// Refuses a screw whose masses swing faster than a step of the mechanics can follow.
+fn screw_within_step(
+    transmission: &Transmission,
+    mechanics_s: f64,
+    at: Places<'_>,
+    faults: &mut Vec<Fault>,
+) {
     let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
     if free_rad_s * mechanics_s > MAX_PHASE_RAD {
         let finest = MAX_PHASE_RAD / free_rad_s;
         faults.push(Fault {
-            at: table.place("resonance_hz"),
+            at: at("resonance_hz"),
             label: "too fast for mechanics_s",
             message: format!(
                 "resonance_hz is {} Hz, with which motor and table swing against each other at {:.0} Hz; mechanics_s of {mechanics_s} s cannot follow that",
@@ -497,6 +528,4 @@ fn transmission(
             hint: Some(format!("mechanics_s has to be {finest:.1e} s or less")),
         });
     }
-    table.finish(faults);
-    transmission
 }

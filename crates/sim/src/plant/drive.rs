@@ -63,11 +63,6 @@ impl Delay {
         }
     }
 
-    /// Takes over the references on their way in `before`; they arrive with this delay.
-    pub(super) fn take_over(&mut self, before: &Self) {
-        (self.sent, self.late, self.newest) = (before.sent, before.late, before.newest);
-    }
-
     /// A new reference leaves the position loop in a servo period.
     pub(super) fn send(&mut self, reference: DriveReference, period: u64) {
         self.newest = (self.newest + 1) % MAX_PERIODS;

@@ -123,15 +123,6 @@ impl DriveSpeed {
         })
     }
 
-    /// Continues with the positions of `before` where the window is the same; a window of another
-    /// length begins anew.
-    pub(super) fn take_over(&mut self, before: &Self) {
-        if self.window == before.window {
-            self.course_rad.clone_from(&before.course_rad);
-            (self.newest, self.taken_rad_s) = (before.newest, before.taken_rad_s);
-        }
-    }
-
     /// Returns the speed over the window that ends with this mechanics period.
     #[inline]
     pub(super) fn speed_rad_s(&mut self, motor: &AxisState, moment: Moment, dt_s: f64) -> f64 {
@@ -201,11 +192,6 @@ impl Latency {
             age: if rest == 0 { periods - 1 } else { periods },
             substep: ((per_servo - rest) % per_servo) as u32,
         })
-    }
-
-    /// Takes over the positions on their way in `before`; they arrive with this latency.
-    pub(super) fn take_over(&mut self, before: &Self) {
-        (self.taken_rad, self.newest) = (before.taken_rad, before.newest);
     }
 
     /// Returns true if the position is taken in this mechanics period of a servo period.

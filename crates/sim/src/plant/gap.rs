@@ -49,11 +49,6 @@ impl<const N: usize> TableGap<N> {
         }
     }
 
-    /// Goes on with the tables of another machine.
-    pub(super) fn take_over(&mut self, before: &Self) {
-        self.table_mm = before.table_mm;
-    }
-
     /// Positions of the tables, mm.
     pub(super) const fn table_mm(&self) -> [f64; N] {
         self.table_mm

@@ -117,11 +117,6 @@ impl CorrelatedNoise {
         }
     }
 
-    /// Continues from the value of `before`.
-    pub(super) fn take_over(&mut self, before: &Self) {
-        self.value = before.value;
-    }
-
     /// One step on, at this moment.
     #[inline]
     pub(super) fn next(&mut self, counter: u64) -> f64 {

@@ -8,7 +8,7 @@
 
 use feedwright_control::{
     AxisModel, AxisState, CommandQueue, DriveModel, DriveState, MechanicsModel, MechanicsState,
-    Part, TableState,
+    Part,
 };
 
 use super::drive::{Delay, in_steps, torque_step_nm};
@@ -97,37 +97,6 @@ impl NonidealAxis {
             && [Part::Drive, Part::Delays, Part::Friction]
                 .iter()
                 .all(|part| !axis.parameters().has(*part))
-    }
-
-    /// The axis goes on as another one: where its parts are and how fast, its commands, what its
-    /// drive has summed up, what is on its way to and from the drive, noise, and the disturbance's
-    /// phase.
-    pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
-        let periods = self.commands.periods();
-        let Some(before) = before else {
-            // The last command, but for the way of a servo period.
-            self.commands = CommandQueue::resting(periods, motor.angle_rad + motor.error_rad);
-            self.masses.table = TableState {
-                angle_rad: motor.angle_rad,
-                speed_rad_s: motor.speed_rad_s,
-            };
-            return;
-        };
-        self.commands = before.commands.with_periods(periods);
-        (self.masses, self.drive_state) = (before.masses, before.drive_state);
-        self.delay.take_over(&before.delay);
-        if let (Some(latency), Some(before)) = (&mut self.latency, &before.latency) {
-            latency.take_over(before);
-        }
-        if let (Some(speed), Some(before)) = (&mut self.speed, &before.speed) {
-            speed.take_over(before);
-        }
-        if let (Some(broadband), Some(before)) = (&mut self.broadband, &before.broadband) {
-            broadband.take_over(before);
-        }
-        if let (Some(wander), Some(before)) = (&mut self.wander, &before.wander) {
-            wander.take_over(before);
-        }
     }
 
     /// The table gains the speed that a torque impulse gives it, N m s; false where the screw is

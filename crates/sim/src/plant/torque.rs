@@ -106,12 +106,6 @@ impl Wander {
         })
     }
 
-    /// Continues at the phase and the frequency of `before`.
-    pub(super) fn take_over(&mut self, before: &Self) {
-        self.noise.take_over(&before.noise);
-        self.ahead_rad = before.ahead_rad;
-    }
-
     /// A servo period begins at t: cos and sin of the phase there, and of the angle by which it
     /// turns in a mechanics period.
     pub(super) fn servo_period(&mut self, period: u64, t_s: f64) -> [[f64; 2]; 2] {

@@ -9,7 +9,7 @@ use feedwright_plan::vector::Vector;
 use super::foot::FootTracker;
 use crate::machine::Machine;
 use crate::reference::Reference;
-use crate::trace::Row;
+use crate::row::Row;
 
 /// Contour error by the encoders over the servo periods that cut, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -21,7 +21,7 @@ use std::collections::VecDeque;
 
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
 
-use crate::trace::{Commanded, Row};
+use crate::row::{Commanded, Row};
 
 /// The uncut path of a run.
 pub struct Uncut {

@@ -3,7 +3,7 @@
 //! Reading, writing, the bounds in messages and the tables of the documents all use such tables. A
 //! new key needs one field and one row.
 
-use super::{Fault, Table, quoted};
+use super::{Fault, Table, out_of_range, quoted};
 
 /// A key of a file.
 pub struct Key<T> {
@@ -106,6 +106,25 @@ pub fn read<T: Default>(keys: &[Key<T>], table: &mut Table<'_, '_>, faults: &mut
         }
     }
     part
+}
+
+/// Checks the ranges of the numbers of a part that was made of values, as [`read`] does.
+pub(crate) fn in_range<T>(keys: &[Key<T>], part: &T, faults: &mut Vec<Fault>) {
+    for key in keys {
+        let [least, most] = key.range;
+        if let Value::Number { get, .. } = key.value
+            && let Some(number) = get(part)
+            && !(least..=most).contains(&number)
+        {
+            faults.push(out_of_range(
+                0..0,
+                key.name,
+                number,
+                key.unit,
+                &(least..=most),
+            ));
+        }
+    }
 }
 
 /// A table that has these keys and no other.

@@ -474,7 +474,8 @@ fn article(kind: &str) -> String {
     format!("{article} {kind}")
 }
 
-fn out_of_range(
+/// Fault of a number outside its range.
+pub(super) fn out_of_range(
     at: Range<usize>,
     key: &str,
     number: f64,

@@ -16,32 +16,32 @@ pub struct ReaderArgs {
     /// fanuc-lathe, haas-mill and haas-lathe where the program does not show the machine. auto
     /// looks at the beginning.
     #[arg(long, value_name = "NAME", default_value = AUTO, hide_short_help = true)]
-    pub dialect: String,
+    pub(crate) dialect: String,
     /// Length of one unit of a number without a decimal point on a Fanuc or Haas: 0.01mm, 0.001mm
     /// or 0.0001mm [default: whole units].
     #[arg(long, value_name = "LENGTH", value_parser = Increment::named, hide_short_help = true)]
-    pub increment: Option<Increment>,
+    pub(crate) increment: Option<Increment>,
     /// Motions after which a program counts as endless.
     #[arg(long, value_name = "N", default_value_t = Settings::default().max_motions, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true, hide_short_help = true)]
-    pub max_motions: u64,
+    pub(crate) max_motions: u64,
     /// Lines without a motion in a row after which a loop counts as endless.
     #[arg(long, value_name = "N", default_value_t = Settings::default().max_idle_lines, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true, hide_short_help = true)]
-    pub max_idle_lines: u64,
+    pub(crate) max_idle_lines: u64,
     /// Tools, as LinuxCNC keeps them: one `T1 P1 Z25.4 D6` a line.
     #[arg(long, value_name = "FILE.tbl")]
     pub tool_table: Option<PathBuf>,
     /// Unit of the lengths in the tool table.
     #[arg(long, value_name = "UNIT", value_enum, default_value_t = Unit::Mm, requires = "tool_table", hide_short_help = true)]
-    pub tool_unit: Unit,
+    pub(crate) tool_unit: Unit,
     /// Folder of subroutines, each in a file of its name (.ngc); may be given several times. The
     /// program's own folder comes first.
     #[arg(long, value_name = "FOLDER", hide_short_help = true)]
-    pub subroutines: Vec<PathBuf>,
+    pub(crate) subroutines: Vec<PathBuf>,
 }
 
 /// Unit of lengths.
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Unit {
+pub(crate) enum Unit {
     Mm,
     Inch,
 }

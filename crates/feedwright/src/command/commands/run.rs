@@ -113,7 +113,7 @@ fn asked(args: &RunArgs, outputs: &Outputs, table: Controllers) -> Result<JobReq
 
 /// The stages whose limits the job assumes where the machine states none.
 fn limits_used(job: &Job) -> Option<Stages> {
-    if job.fastest {
+    if job.request.fastest {
         return Some(Stages::of(&job.machine.planned_by_axes(1.0)));
     }
     job.target.map(|target| target.stages(&job.machine))

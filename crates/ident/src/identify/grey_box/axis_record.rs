@@ -1,24 +1,25 @@
-//! What was recorded of one axis, and how it moved.
+//! View of one axis of a log: what was recorded of it, and how it moved.
 
 use std::ops::Range;
 
 use crate::average::rms;
+use crate::log::{Log, LogAxis};
 
 /// Commanded and actual positions of an axis at an even clock.
 #[derive(Debug, Clone, Copy)]
-pub struct AxisRecord<'a> {
+pub(crate) struct AxisRecord<'a> {
     /// Name of the axis.
-    pub name: &'a str,
+    pub(crate) name: &'a str,
     /// Time between two samples, s.
-    pub sample_s: f64,
+    pub(crate) sample_s: f64,
     /// Even stretches.
-    pub stretches: &'a [Range<usize>],
+    pub(crate) stretches: &'a [Range<usize>],
     /// Command, mm.
-    pub command_mm: &'a [f64],
+    pub(crate) command_mm: &'a [f64],
     /// Actual position, mm.
-    pub actual_mm: &'a [f64],
+    pub(crate) actual_mm: &'a [f64],
     /// Step of the actual position, mm; zero where none shows.
-    pub step_mm: f64,
+    pub(crate) step_mm: f64,
 }
 
 /// Samples to each side that a speed is taken over, and an acceleration: the mean of a few keeps
@@ -35,6 +36,21 @@ const SLOWEST_LOOP_S: f64 = 0.1;
 const NEARLY: f64 = 4.0;
 /// Samples that a lag is found from at the most.
 const COMPARED: usize = 20_000;
+
+impl<'a> AxisRecord<'a> {
+    /// Returns the axes of a log.
+    pub(super) fn of(log: &'a Log) -> Vec<Self> {
+        let record = |axis: &'a LogAxis| Self {
+            name: &axis.name,
+            sample_s: log.sample_time_s,
+            stretches: &log.stretches,
+            command_mm: &axis.command_mm,
+            actual_mm: &axis.actual_mm,
+            step_mm: axis.step_mm,
+        };
+        log.axes.iter().map(record).collect()
+    }
+}
 
 impl AxisRecord<'_> {
     /// Speed of the command at each sample, mm/s.

@@ -75,7 +75,7 @@ pub struct FoundAxis {
     pub half_intervals: Vec<f64>,
     /// Lower triangle of a root of their covariance, in their units, row by row; `None` where the
     /// fit leaves a term open.
-    pub uncertain: Option<Vec<Vec<f64>>>,
+    pub(crate) uncertain: Option<Vec<Vec<f64>>>,
     /// Model with the speed measurement of the drive, where a torque column or a fact determines
     /// it.
     pub resolved: Option<ResolvedModel>,

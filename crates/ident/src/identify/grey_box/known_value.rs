@@ -6,7 +6,7 @@ pub struct KnownValue {
     /// Value.
     pub(crate) value: f64,
     /// Standard deviation.
-    pub spread: f64,
+    pub(crate) spread: f64,
 }
 
 impl KnownValue {

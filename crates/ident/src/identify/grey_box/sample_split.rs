@@ -13,7 +13,7 @@ use super::axis_record::AxisRecord;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SampleSplit {
     /// Fitted.
-    pub fit: Vec<bool>,
+    pub(crate) fit: Vec<bool>,
     /// Kept to judge by.
     pub score: Vec<bool>,
     /// Axes by place and direction, -1 or 1, that move that way in one part alone, or hardly in

@@ -35,7 +35,7 @@ pub struct TorqueColumn {
     /// Its standard error, mm/s2.
     pub(crate) coulomb_error_mm_s2: f64,
     /// Offset over J, mm/s2.
-    pub offset_mm_s2: f64,
+    pub(crate) offset_mm_s2: f64,
     /// Part of the variance of the column that is explained.
     pub(crate) explained: f64,
     /// Samples by which the column is later than the motion.

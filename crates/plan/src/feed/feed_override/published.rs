@@ -10,7 +10,7 @@ const AT_S: f64 = 1e-11;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PublishedSpan {
     /// Plan time at which it begins, s.
-    pub from_s: f64,
+    pub(crate) from_s: f64,
     /// Motion of the axes at its start.
     pub(crate) motion: AxisMotion,
     /// True where feed overrides apply: it is not a rapid.

@@ -116,7 +116,7 @@ pub(super) struct BlockMaker {
     /// Circles that may be parts of a spiral.
     arcs: ArcParts,
     /// Blocks that are made.
-    pub ready: VecDeque<PlannerBlock>,
+    pub(crate) ready: VecDeque<PlannerBlock>,
 }
 
 impl BlockMaker {

@@ -30,7 +30,7 @@ pub(super) struct SegmentQueue {
     /// Limits of the machine.
     pub(crate) limits: DirectionLimits,
     /// Segments, the one under way first.
-    pub segments: VecDeque<MotionSegment>,
+    pub(crate) segments: VecDeque<MotionSegment>,
 }
 
 impl SegmentQueue {

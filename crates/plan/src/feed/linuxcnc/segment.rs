@@ -32,7 +32,7 @@ pub(super) struct MotionSegment {
     /// Length.
     pub(crate) length_mm: f64,
     /// Length before anything was cut.
-    pub nominal_mm: f64,
+    pub(crate) nominal_mm: f64,
     /// Distance covered so far.
     pub(crate) progress_mm: f64,
     /// Speed asked for.
@@ -59,7 +59,7 @@ pub(super) struct MotionSegment {
     /// True where the segment before blends into it.
     pub(crate) is_blended_into: bool,
     /// Tolerance of a blend, mm; 0 means no tolerance.
-    pub tolerance_mm: f64,
+    pub(crate) tolerance_mm: f64,
     /// True for a rapid.
     pub(crate) is_rapid: bool,
     /// True where an axis other than X, Y and Z moves along.
@@ -79,15 +79,15 @@ pub(super) struct SegmentRun {
     /// Time that it has in this servo period.
     pub(crate) period_s: f64,
     /// It has begun.
-    pub is_active: bool,
+    pub(crate) is_active: bool,
     /// It runs at one acceleration.
     pub(crate) is_ramp: bool,
     /// It ends within this servo period.
     pub(crate) ends_within: bool,
     /// It is over.
-    pub is_over: bool,
+    pub(crate) is_over: bool,
     /// It slows down to its final speed.
-    pub slows_down: bool,
+    pub(crate) slows_down: bool,
     /// The next one has begun.
     pub(crate) blends: bool,
 }

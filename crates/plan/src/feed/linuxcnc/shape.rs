@@ -25,11 +25,11 @@ pub(super) struct CircleShape {
     /// Centre, beside the start.
     pub(crate) center_mm: Vector,
     /// Vector from the center to the start.
-    pub first_mm: Vector,
+    pub(crate) first_mm: Vector,
     /// Vector of the same length in the direction of travel at the start.
-    pub second_mm: Vector,
+    pub(crate) second_mm: Vector,
     /// Unit vector of the axis that it turns about, to the left.
-    pub normal: Vector,
+    pub(crate) normal: Vector,
     /// Radius at the start.
     pub(crate) radius_mm: f64,
     /// Angle turned.
@@ -37,7 +37,7 @@ pub(super) struct CircleShape {
     /// Growth of the radius over the whole angle, as a part of the radius at the start.
     pub(crate) growth: f64,
     /// Way along the axis.
-    pub rise_mm: Vector,
+    pub(crate) rise_mm: Vector,
     /// Rounding error at its end, mm: from the computed end to the programmed end.
     pub(crate) left_over_mm: Vector,
 }
@@ -54,7 +54,7 @@ pub(super) struct BlendShape {
     /// Centre.
     pub(crate) center_mm: Vector,
     /// Vectors from the center to both ends.
-    pub ends_mm: [Vector; 2],
+    pub(crate) ends_mm: [Vector; 2],
     /// Radius at the start.
     pub(crate) radius_mm: f64,
     /// Angle turned.

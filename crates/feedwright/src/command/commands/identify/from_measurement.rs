@@ -6,8 +6,7 @@ use std::process::ExitCode;
 
 use feedwright_gcode::input;
 use feedwright_ident::{
-    FoundGeometry, GeometryInput, KnownScrew, comp_file, fit_geometry, geometry_of_tables,
-    sampled_table,
+    FoundGeometry, GeometryInput, comp_file, fit_geometry, geometry_of_tables, sampled_table,
 };
 use feedwright_sim::{AXIS_NAMES, GeometryFile, Machine, is_machine_path, to_four_digits};
 use miette::{IntoDiagnostic, Result, miette};
@@ -110,10 +109,9 @@ fn found(measured: &[AxisFile], machine: &Machine) -> Result<FoundGeometry> {
     for (number, set) in sets.iter_mut().enumerate() {
         set.name = format!("{} {} {}", set.kind, set.axes, number + 1);
     }
-    let screws = [0, 1, 2].map(|axis| KnownScrew::of(machine, axis));
     let source = format!("{}, on {}", names.join(", "), machine.name);
     if tables.is_empty() {
-        Ok(fit_geometry(sets, screws, &source)?)
+        Ok(fit_geometry(sets, &machine.axes, &source)?)
     } else {
         Ok(geometry_of_tables(tables, &source)?)
     }

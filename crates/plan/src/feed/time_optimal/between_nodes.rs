@@ -1,5 +1,6 @@
-//! What the nodes do not bound: between them, the distance of the motion from the path, of the path
-//! from the motion, and the feedrate.
+//! Checks a window between its nodes, where its problem bounds nothing: the distance of the motion
+//! from the path, of the path from the motion, the feedrate, and the velocity of each axis. What
+//! exceeds a bound is tightened for the next solution.
 
 use super::mesh::{MeshNode, NEAR_START};
 use super::steps::{AxisCaps, PlannedStep};

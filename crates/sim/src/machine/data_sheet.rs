@@ -1,5 +1,5 @@
-//! Properties of a machine that may be known before it is identified: the settings of its control,
-//! and the maker's data of its axes.
+//! Data sheet of a machine, what is known of it before it is identified: the settings of its
+//! control, and the maker's data of its axes.
 //!
 //! Controllers are made from this and from a trained model, never from a [`Machine`]. Properties of
 //! a simulated machine alone are not here: encoder, jitter, steps of the drive, ball screw, cogging
