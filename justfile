@@ -104,9 +104,10 @@ identification-figure log fit score shown out="docs/identification.svg":
 identification-sweep logs="5" machines="tnv40 heavy sticky soft coarse sliding workshop stiff router":
     cargo run --release -p feedwright-lab --example identification_sweep -- {{ logs }} {{ machines }}
 
-# What logs of the built-in machines tell, with which the program is shipped. After a change of a machine or of the identification: some minutes.
-built-in-logs:
-    cargo run --release -p feedwright-lab --example built_in_logs
+# Models by logs of the built-in machines, or of those that are named, which the program is shipped with. After a change of a machine or
+# of the identification: 20 minutes of processor time for all.
+built-in-logs *machines:
+    cargo run --release -p feedwright-lab --example built_in_logs -- {{ machines }}
 
 # Random programs on random machines against open loop: `just held-out 20261 2000 --failures target/failures`. Seeds of a
 # verdict are drawn after the settings are frozen.

@@ -74,6 +74,7 @@ mod golden_help;
 mod golden_linuxcnc_setup;
 mod oracle_contour_metric;
 mod oracle_grey_box;
+mod oracle_place_waves;
 mod oracle_plant_terms;
 mod property_correct;
 mod property_identification;

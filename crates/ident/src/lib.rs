@@ -96,6 +96,7 @@ pub use identify::grey_box::axis_facts::AxisFacts;
 pub use identify::grey_box::found_axis::{FoundAxis, NumberSource};
 pub use identify::grey_box::free_run_scores::{FreeRunErrors, HORIZONS};
 pub use identify::grey_box::known_value::KnownValue;
+pub use identify::grey_box::place_waves::{PlaceWave, PlaceWaves, place_waves};
 pub use identify::grey_box::search_bound::SearchBound;
 pub use identify::grey_box::terms::ModelTerm;
 pub use identify::grey_box::verdict::ModelVerdict;

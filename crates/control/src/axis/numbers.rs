@@ -26,8 +26,7 @@
 //!
 //! A new number is one row here, its equation, and a line in each of the documents.
 
-/// Passes the table to a macro: the keys of `[axis.x]`, those of `[axis.x.transmission]`, and the
-/// numbers that no machine file has.
+/// Passes the table to a macro: the keys of `[axis.x]` and those of `[axis.x.transmission]`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! axis_numbers {
@@ -115,6 +114,9 @@ holds it";
                 signal_period_um or_zero "um" [0.0, 1e5] "Signal period of the encoder"
                     => { 29 Noise signal_per_rad "1/rad" within [0.0, 1e9] 2
                         ("Signal periods in a radian, times 2 pi", Axis::signal_per_rad) };
+                interpolation_phase_rad or_zero "rad" [-10.0, 10.0]
+                    "Phase of this error where the axis and the angle of the motor are zero"
+                    => { 28 Noise interpolation_phase_rad within 2 };
                 measurement_delay_s or_zero "s" [0.0, 0.02] "Latency of the measured position"
                     => { 12 Delays measurement_delay_s within 2 };
                 jitter_s or_zero "s" [0.0, 0.02]
@@ -139,6 +141,9 @@ direction it is lower by the same amount"
                     => { 35 Noise cogging_nm within 2 };
                 cogging_per_rev or_zero "1/rev" [0.0, 1e4] "Periods of the cogging torque in a turn"
                     => { 37 Noise cogging_per_rev within 2 };
+                cogging_phase_rad or_zero "rad" [-10.0, 10.0]
+                    "Phase of the cogging torque where the axis and the angle of the motor are zero"
+                    => { 36 Noise cogging_phase_rad within 2 };
                 ripple or_zero "(no unit)" [0.0, 1.0]
                     "Amplitude of the torque ripple, part of the torque" needs ripple_per_rev;
                 ripple_per_rev or_zero "1/rev" [0.0, 1e4] "Periods of the torque ripple in a turn";
@@ -178,12 +183,6 @@ drive allow";
                 scale_on_table flag "(0 or 1)" [0.0, 1.0]
                     "True if the position is measured at the table (a linear scale) instead of \
 the motor";
-            }
-            model {
-                { 28 Noise interpolation_phase_rad "rad" within [-10.0, 10.0] 2
-                    ("Phase of the encoder's error at angle zero") };
-                { 36 Noise cogging_phase_rad "rad" within [-10.0, 10.0] 2
-                    ("Phase of the cogging torque at angle zero") };
             }
         }
     };
@@ -267,19 +266,17 @@ macro_rules! parameters {
             $screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal
             $(=> { $($of_screw:tt)* })?;
         )* }
-        model { $({ $($own:tt)* };)* }
     ) => {
         parameters! { @
             $($({ $unit $range $words $($number)* })?)*
             $($({ $screw_unit $screw_range $screw_words $($of_screw)* })?)*
-            $({ "" [0.0, 0.0] "" $($own)* })*
         }
     };
     (@ $({
         $key_unit:literal $key_range:tt $key_words:literal
         $place:literal $part:ident $name:ident $($unit:literal)?
         $rule:ident $([$least:expr, $most:expr])? $format:literal
-        $(($words:literal $(, $of:expr)?))?
+        $(($words:literal, $of:expr))?
     })*) => {
         /// The numbers of an axis at the motor shaft. Zero omits a part.
         #[derive(Debug, Clone, Copy, Default, PartialEq)]

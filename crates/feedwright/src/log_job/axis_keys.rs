@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_control::Part;
-use feedwright_ident::{FoundAxis, ModelTerm, NumberSource, SERVO_MECHANICS};
+use feedwright_ident::{FoundAxis, ModelTerm, NumberSource, PlaceWave, SERVO_MECHANICS};
 use feedwright_sim::rounded;
 
 use super::digits;
@@ -35,6 +35,7 @@ pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> [Vec<AxisKey>; 2] {
     loops(&mut keys, found);
     extras(&mut keys, found, mechanics_s);
     noise(&mut keys, found);
+    place_waves(&mut keys, found);
     [keys, transmission(found, mechanics_s)]
 }
 
@@ -96,6 +97,66 @@ fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
             "as long as that is correlated",
         ));
     }
+}
+
+/// Adds the keys of what repeats with place, where the log shows it.
+fn place_waves(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
+    if let Some(wave) = found.waves.interpolation {
+        keys.push(identified_key(
+            "interpolation_error_um",
+            wave.amplitude.min(1e3),
+            "as the log shows it, period after period of the encoder",
+        ));
+        let is_given = found.facts.signal_period_mm.is_some();
+        keys.push(period_key(
+            "signal_period_um",
+            1e3 * wave.period_mm,
+            is_given,
+            String::new(),
+        ));
+        keys.push(phase_key("interpolation_phase_rad", &wave));
+    }
+    if let Some(wave) = found.waves.cogging {
+        keys.push(identified_key(
+            "cogging_nm",
+            (nm_per_mm_s2(found) * wave.amplitude).min(1e5),
+            "as the log shows it",
+        ));
+        let (lead, of_lead) = found.lead();
+        let period = format!(
+            ": a period of {} mm on a lead that is {}",
+            digits(wave.period_mm),
+            of_lead.word()
+        );
+        let is_given = found.facts.cogging_per_rev.is_some();
+        keys.push(period_key(
+            "cogging_per_rev",
+            lead / wave.period_mm,
+            is_given,
+            period,
+        ));
+        keys.push(phase_key("cogging_phase_rad", &wave));
+    }
+}
+
+/// Key of a period over the place. A travel has thousands of periods, so it has more digits than
+/// other keys.
+fn period_key(name: &'static str, value: f64, is_given: bool, more: String) -> AxisKey {
+    let source = if is_given {
+        NumberSource::Given
+    } else {
+        NumberSource::Identified
+    };
+    AxisKey {
+        value: rounded(value, 9),
+        comment: format!("{}{more}", source.word()),
+        ..by_source(name, value, source)
+    }
+}
+
+/// Key of a phase over the place.
+fn phase_key(name: &'static str, wave: &PlaceWave) -> AxisKey {
+    identified_key(name, wave.phase_rad, "at position zero of the log")
 }
 
 /// Says what of the log no key describes.

@@ -20,7 +20,7 @@ or the difference of its encoder over dt where the drive takes it from there (0 
     I' = I + Kv d dt / speed_integral_s, unless |Kv d + u_ff + I'| is above the limit and its sign that of d: then I' = I
     y += (1 - exp(-2 pi torque_filter_hz dt)) (clamp(Kv d + u_ff + I', +-limit) - y)
     u = the nearest of 2^bits steps over the range to y, where the drive has bits
-    motor torque: u (1 + ripple sin(ripple_per_rev th)) + cogging sin(cogging_per_rev th)
+    motor torque: u (1 + ripple sin(ripple_per_rev th)) + cogging sin(cogging_per_rev th + cogging_phase_rad)
 
 A rigid axis: J dw/dt = motor torque - L - F(w). With a transmission motor and table are two masses, Jt = share J and Jm = J - Jt, and
 the tool is the table (Altintas 2012, section 5; Nordin and Gutman 2002, eq. 4):
@@ -39,7 +39,7 @@ Friction, d the direction of motion, g(w, d) = Fc + Fa d + Fs exp(-(w / stribeck
     f' = d g + (f - d g) exp(-S |w'| dt / g)
 
 Semi-implicit Euler, every mass's speed and then its angle, t at the start of the step; the axis starts at rest at the
-first path point. What an encoder shows of an angle: interpolation error A sin(2 pi x / signal period) and white noise added, in whole steps; x is the
+first path point. What an encoder shows of an angle: interpolation error A sin(2 pi x / signal period + interpolation_phase_rad) and white noise added, in whole steps; x is the
 motor's, or the table's where the scale is there, measurement_delay_s ago. Where t_s jumps, in a long rest, everything stays but t.
 
 The tool is where the geometry puts it: joint + scale joint + pitch_error sin(2 pi joint / lead), and of squareness x += xy y + xz z,
@@ -134,12 +134,13 @@ class Encoder:
         rad = 1e-3 * 2 * math.pi / axis["lead_mm_per_rev"]
         self.step, self.noise = axis.get("encoder_step_um", 0) * rad, axis.get("encoder_noise_um", 0) * rad
         self.error, self.period = axis.get("interpolation_error_um", 0) * rad, axis.get("signal_period_um", 0) * rad
+        self.phase = axis.get("interpolation_phase_rad", 0)
         self.stream = stream
 
     def read(self, angle, moment):
         shown = angle
         if self.error > 0:
-            shown += self.error * math.sin(2 * math.pi / self.period * angle)
+            shown += self.error * math.sin(2 * math.pi / self.period * angle + self.phase)
         if self.noise > 0:
             shown += self.noise * self.stream.normal(moment)
         return stepped(shown, self.step)
@@ -314,7 +315,7 @@ def cut(axis, index, period, seed, times_s, start_mm, commands_mm, finer):
                 t = start + (i * finer + j) * dt
                 load = disturbance * math.sin(turn * t + ahead + faster * (t - start)) + noise
                 driving = torque * (1 + get("ripple") * math.sin(get("ripple_per_rev") * angle))
-                driving += get("cogging_nm") * math.sin(get("cogging_per_rev") * angle)
+                driving += get("cogging_nm") * math.sin(get("cogging_per_rev") * angle + get("cogging_phase_rad"))
                 before = tool_speed
                 if screw:
                     through = pushed(stiffness, damping, gap, angle - tool, speed - tool_speed)

@@ -25,8 +25,8 @@ mod noise;
 mod place;
 use std::f64::consts::TAU;
 
-use feedwright_control::Parameters;
-use feedwright_sim::{Known, KnownAxis, Period};
+use feedwright_control::{Parameters, Periods};
+use feedwright_sim::Known;
 
 use super::recording::Recording;
 use crate::spectrum::{self, Spectrum};
@@ -65,17 +65,32 @@ pub fn axis_statistics<const N: usize>(recording: &Recording<N>, known: &Known) 
     std::array::from_fn(|i| {
         let axis = known.axis(i);
         let stretches = recording.of_axis(i, axis.nominal.command_periods(known.period.servo_s));
-        of_axis(&stretches, axis, &known.period)
+        let periods = known.period.periods();
+        of_axis(&stretches, axis.nominal, periods, &KnownWaves::default())
     })
 }
 
+/// Waves whose place is known. Only their amplitudes and phases are then estimated.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct KnownWaves {
+    /// Signal periods of the encoder in a radian of the motor, times 2 pi.
+    pub(super) signal_per_rad: Option<f64>,
+    /// Periods of the cogging in a turn of the motor.
+    pub(super) cogging_per_rev: Option<f64>,
+}
+
 /// Estimates the statistics of one axis from commands and measured positions, mm, one pair per
-/// servo period.
-fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> Parameters {
-    let rad_per_mm = known.nominal.rad_per_mm;
+/// servo period. `nominal` is the axis model.
+pub(super) fn of_axis(
+    stretches: &[Vec<[f64; 2]>],
+    nominal: Parameters,
+    periods: Periods,
+    known: &KnownWaves,
+) -> Parameters {
+    let (rad_per_mm, servo_s) = (nominal.rad_per_mm, periods.servo_s);
     let step_rad = step_mm(stretches) * rad_per_mm;
     let noise_rad = rough_noise_mm(stretches) * rad_per_mm;
-    let filter = AxisFilter::new(known, period, noise_rad);
+    let filter = AxisFilter::new(nominal, periods, noise_rad);
     let in_rad = stretches.iter().map(|stretch| {
         stretch
             .iter()
@@ -83,35 +98,39 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> P
             .collect()
     });
     let innovations = filter.innovations(in_rad);
-    let segment = ((SEGMENT_S / period.servo_s) as usize).next_power_of_two();
+    let segment = ((SEGMENT_S / servo_s) as usize).next_power_of_two();
     if innovations.counts.iter().filter(|&&counts| counts).count() < 2 * segment {
         return Parameters {
             encoder_step_rad: step_rad,
             ..Parameters::NOTHING
         };
     }
-    let least_nm = LEAST_TORQUE * known.nominal.coulomb_friction_nm;
+    let least_nm = LEAST_TORQUE * nominal.coulomb_friction_nm;
     let segment_responses = filter.responses(segment);
     let noise_of = |innovations: &Innovations| {
         let spectrum = Spectrum::new(&innovations.error_rad, &innovations.counts, segment);
-        Seen::new(&spectrum, &segment_responses, period.servo_s).noise(least_nm)
+        Seen::new(&spectrum, &segment_responses, servo_s).noise(least_nm)
     };
     let length = (innovations.error_rad.len() + segment).next_power_of_two();
     let responses = filter.responses(length);
     let first = noise_of(&innovations);
-    let weighed = Weighed::new(&innovations, &responses, &first, period.servo_s);
-    let waves = waves(
-        &weighed,
-        &responses,
-        &first,
-        period.servo_s,
-        [step_rad, least_nm],
-    );
+    let is_steps = step_rad > 0.0 && is_steps_alone(&first, step_rad);
+    let weighed = Weighed::new(&innovations, &responses, &first, servo_s, is_steps);
+    let search = WaveSearch {
+        responses: &responses,
+        noise: &first,
+        servo_s,
+        step_rad,
+        is_steps,
+        least_nm,
+        known,
+    };
+    let waves = search.waves(&weighed);
     if waves.is_empty() {
         return statistics(&first, &[], step_rad);
     }
     let noise = noise_of(&weighed.without(&waves));
-    let weighed = Weighed::new(&innovations, &responses, &noise, period.servo_s);
+    let weighed = Weighed::new(&innovations, &responses, &noise, servo_s, is_steps);
     let shown = |(through, wave): &(Through, Wave)| match through {
         Through::Motor => wave.amplitude() > least_nm,
         Through::Encoder => wave.amplitude() > least_rad(&noise),
@@ -125,42 +144,63 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> P
     statistics(&noise_of(&weighed.without(&kept)), &kept, step_rad)
 }
 
-/// Finds the waves that repeat with place: the stronger kind first, the other in the residual.
-fn waves(
-    weighed: &Weighed<'_>,
-    responses: &[Vec<spectrum::Phasor>; 2],
-    noise: &NoiseFit,
+/// Search for the waves that repeat with place.
+struct WaveSearch<'a> {
+    responses: &'a [Vec<spectrum::Phasor>; 2],
+    noise: &'a NoiseFit,
     servo_s: f64,
-    [step_rad, least_nm]: [f64; 2],
-) -> Vec<(Through, Wave)> {
-    let cogging = weighed
-        .cogging(least_nm)
-        .map(|(wave, gain)| (Through::Motor, wave, gain));
-    let interpolation = weighed
-        .interpolation(step_rad, least_rad(noise))
-        .map(|(wave, gain)| (Through::Encoder, wave, gain));
-    let Some((through, wave, _)) = [cogging, interpolation]
-        .into_iter()
-        .flatten()
-        .max_by(|a, b| a.2.total_cmp(&b.2))
-    else {
-        return Vec::new();
-    };
-    let left = weighed.without(&[(through, wave)]);
-    let weighed = Weighed::new(&left, responses, noise, servo_s);
-    let other = match through {
-        Through::Motor => weighed
-            .interpolation(step_rad, least_rad(noise))
-            .map(|(wave, _)| (Through::Encoder, wave)),
-        Through::Encoder => weighed
-            .cogging(least_nm)
-            .map(|(wave, _)| (Through::Motor, wave)),
-    };
-    let other = other.filter(|(_, other)| (other.per_rad - wave.per_rad).abs() > APART);
-    [Some((through, wave)), other]
-        .into_iter()
-        .flatten()
-        .collect()
+    step_rad: f64,
+    /// True if its steps are the only noise of the encoder.
+    is_steps: bool,
+    /// Smallest cogging, N m.
+    least_nm: f64,
+    known: &'a KnownWaves,
+}
+
+impl WaveSearch<'_> {
+    /// Finds the waves: the stronger kind first, the other in the residual.
+    fn waves(&self, weighed: &Weighed<'_>) -> Vec<(Through, Wave)> {
+        let Some((through, wave, _)) = [Through::Motor, Through::Encoder]
+            .into_iter()
+            .filter_map(|through| self.wave(weighed, through))
+            .max_by(|a, b| a.2.total_cmp(&b.2))
+        else {
+            return Vec::new();
+        };
+        let left = weighed.without(&[(through, wave)]);
+        let weighed = Weighed::new(
+            &left,
+            self.responses,
+            self.noise,
+            self.servo_s,
+            self.is_steps,
+        );
+        let other = match through {
+            Through::Motor => Through::Encoder,
+            Through::Encoder => Through::Motor,
+        };
+        let other = self
+            .wave(&weighed, other)
+            .map(|(through, wave, _)| (through, wave))
+            .filter(|(_, other)| (other.per_rad - wave.per_rad).abs() > APART);
+        [Some((through, wave)), other]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
+    /// Returns the wave of a kind, if it shows, and the gain in 2 ln L.
+    fn wave(&self, weighed: &Weighed<'_>, through: Through) -> Option<(Through, Wave, f64)> {
+        let found = match through {
+            Through::Motor => weighed.cogging(self.least_nm, self.known.cogging_per_rev),
+            Through::Encoder => weighed.interpolation(
+                self.step_rad,
+                least_rad(self.noise),
+                self.known.signal_per_rad,
+            ),
+        };
+        found.map(|(wave, gain)| (through, wave, gain))
+    }
 }
 
 /// Least interpolation error that is of use, rad.
@@ -169,10 +209,16 @@ fn least_rad(noise: &NoiseFit) -> f64 {
         .max(LEAST_NOISES * innovation::LEAST_NOISE_RAD)
 }
 
-fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Parameters {
+/// Returns true if the encoder has no noise but the rounding to its steps.
+fn is_steps_alone(noise: &NoiseFit, step_rad: f64) -> bool {
     let of_steps_rad2 = step_rad * step_rad / 12.0;
     let least_rad2 = (STEPS_ALONE * of_steps_rad2).max(4.0 * innovation::LEAST_NOISE_RAD.powi(2));
-    let alone = noise.encoder_rad2 < least_rad2;
+    noise.encoder_rad2 < least_rad2
+}
+
+fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Parameters {
+    let of_steps_rad2 = step_rad * step_rad / 12.0;
+    let alone = is_steps_alone(noise, step_rad);
     let wave = |kind: Through| {
         waves
             .iter()

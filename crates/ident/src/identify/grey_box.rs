@@ -22,6 +22,7 @@
 //! | `grey_box/torque_column.rs` | what a torque column adds |
 //! | `grey_box/linear_arx.rs`, `grey_box/start_filter.rs`, `grey_box/free_run_scores.rs` | how far predictions miss |
 //! | `grey_box/residual_noise.rs` | what free runs leave, as a load |
+//! | `grey_box/place_waves.rs` | interpolation error of the encoder and cogging |
 //! | `grey_box/gain_changes.rs` | what other gains would bring |
 //! | `grey_box/search_bound.rs` | values that end where their search ends |
 //! | `grey_box/found_axis.rs`, `grey_box/verdict.rs` | what was found, and what to say of it |
@@ -42,6 +43,7 @@ pub(crate) mod linear_arx;
 mod start_filter;
 pub(crate) mod free_run_scores;
 pub(crate) mod residual_noise;
+pub(crate) mod place_waves;
 pub(crate) mod gain_changes;
 pub(crate) mod search_bound;
 pub(crate) mod found_axis;
@@ -203,6 +205,9 @@ pub fn identify_machine(
                     .extend(command_delay::at_bound(axis, sample_s));
             });
         }
+    }
+    for (axis, record) in axes.iter_mut().zip(records) {
+        axis.waves = axis.waves_in(record);
     }
     let contour = ContourScores::of(records, &axes, &split.score);
     Ok(FoundMachine {

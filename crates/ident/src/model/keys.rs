@@ -65,7 +65,6 @@ macro_rules! axes_keys {
             $screw:ident $screw_kind:ident $screw_unit:literal $screw_range:tt $screw_words:literal
             $(=> { $screw_place:literal $($of_screw:tt)* })?;
         )* }
-        model { $({ $own_place:literal $($own:tt)* };)* }
     ) => {
         const AXES: &[Key<Weights>] = &{
             const FIRST: Key<Weights> =
@@ -73,7 +72,6 @@ macro_rules! axes_keys {
             let mut keys = [FIRST; 1 + Parameters::NUMBERS.len()];
             $($(keys[1 + $place] = of_axes::<$place>();)?)*
             $($(keys[1 + $screw_place] = of_axes::<$screw_place>();)?)*
-            $(keys[1 + $own_place] = of_axes::<$own_place>();)*
             keys
         };
     };

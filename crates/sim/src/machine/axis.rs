@@ -93,7 +93,6 @@ macro_rules! axis {
                 $(($screw_own_words:literal, $of_screw:expr))?
             })?;
         )* }
-        model { $($model:tt)* }
     ) => {
         /// A servo axis: mechanics at the motor shaft and the two control loops.
         #[derive(Debug, Clone, Copy, Default, PartialEq)]

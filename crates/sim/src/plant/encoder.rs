@@ -2,11 +2,11 @@
 //! control gets the value.
 //!
 //! ```text
-//! y = q round((x + A sin(2 pi x / P) + s n(c)) / q)       at mechanics period c
+//! y = q round((x + A sin(2 pi x / P + a) + s n(c)) / q)   at mechanics period c
 //! ```
 //!
-//! x angle at the encoder, rad at the motor shaft; A and P amplitude and signal period of the
-//! interpolation error; s RMS of the noise, n(c) as in `noise.rs`; q step; what is zero is not
+//! x angle at the encoder, rad at the motor shaft; A, P and a amplitude, signal period and phase of
+//! the interpolation error; s RMS of the noise, n(c) as in `noise.rs`; q step; what is zero is not
 //! there. The control has of y what it was a latency ago, in whole mechanics periods, and before
 //! the start where the axis stood. The speed that a drive takes from positions is
 //!
@@ -45,6 +45,8 @@ pub(super) struct Encoder {
     error_rad: f64,
     /// Turns of the signal in a radian of the shaft, times 2 pi.
     signal_per_rad: f64,
+    /// Phase of the error at angle zero, rad.
+    error_phase_rad: f64,
     stream: RandomStream,
 }
 
@@ -60,6 +62,7 @@ impl Encoder {
             } else {
                 0.0
             },
+            error_phase_rad: axis.interpolation_phase_rad,
             stream,
         }
     }
@@ -69,7 +72,8 @@ impl Encoder {
     pub(super) fn read(&self, angle_rad: f64, counter: u64) -> f64 {
         let mut shown_rad = angle_rad;
         if self.error_rad > 0.0 {
-            shown_rad += self.error_rad * libm::sin(self.signal_per_rad * angle_rad);
+            let phase_rad = self.signal_per_rad * angle_rad + self.error_phase_rad;
+            shown_rad += self.error_rad * libm::sin(phase_rad);
         }
         if self.noise_rad > 0.0 {
             shown_rad += self.noise_rad * self.stream.normal(counter);
@@ -229,21 +233,29 @@ mod tests {
             signal_period_um: 20.0,
             ..axis()
         };
-        let encoder = Encoder::new(&axis, RandomStream::new(0, 0, RandomUse::Encoder));
         let um_per_rad = 1e3 * axis.lead_mm_per_rev / TAU;
-        for (at_um, error_um) in [
-            (0.0, 0.0),
-            (5.0, 0.5),
-            (10.0, 0.0),
-            (15.0, -0.5),
-            (1005.0, 0.5),
-            (-5.0, -0.5),
-        ] {
-            let shown_um = encoder.read(at_um / um_per_rad, 0) * um_per_rad;
-            assert!(
-                (shown_um - at_um - error_um).abs() < 1e-9,
-                "{at_um}: {shown_um}"
-            );
+        // A phase of a quarter turn is a way of a quarter period.
+        for (interpolation_phase_rad, ahead_um) in [(0.0, 0.0), (0.25 * TAU, 5.0)] {
+            let axis = Axis {
+                interpolation_phase_rad,
+                ..axis
+            };
+            let encoder = Encoder::new(&axis, RandomStream::new(0, 0, RandomUse::Encoder));
+            for (place_um, error_um) in [
+                (0.0, 0.0),
+                (5.0, 0.5),
+                (10.0, 0.0),
+                (15.0, -0.5),
+                (1005.0, 0.5),
+                (-5.0, -0.5),
+            ] {
+                let at_um = place_um - ahead_um;
+                let shown_um = encoder.read(at_um / um_per_rad, 0) * um_per_rad;
+                assert!(
+                    (shown_um - at_um - error_um).abs() < 1e-9,
+                    "{at_um}: {shown_um}"
+                );
+            }
         }
     }
 

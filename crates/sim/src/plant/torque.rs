@@ -2,7 +2,7 @@
 //! disturbance whose frequency wanders.
 //!
 //! ```text
-//! motor:    u (1 + r sin(n_r th)) + C sin(n_c th)               th angle of the motor, rad; n periods in a turn
+//! motor:    u (1 + r sin(n_r th)) + C sin(n_c th + c)           th angle of the motor, rad; n periods in a turn, c phase
 //! load:     D sin(phi) + x,     x noise with a correlation time   as in `noise.rs`, one step a mechanics period
 //! phi = 2 pi f t + psi,  d psi/dt = 2 pi f y                     y noise with a correlation time of 1 s, one step a servo period
 //! ```
@@ -31,6 +31,7 @@ pub(super) struct MotorTorque {
     ripple_per_rev: f64,
     cogging_nm: f64,
     cogging_per_rev: f64,
+    cogging_phase_rad: f64,
 }
 
 impl MotorTorque {
@@ -41,6 +42,7 @@ impl MotorTorque {
             ripple_per_rev,
             cogging_nm,
             cogging_per_rev,
+            cogging_phase_rad,
             ..
         } = *axis;
         (ripple > 0.0 || cogging_nm > 0.0).then_some(Self {
@@ -48,6 +50,7 @@ impl MotorTorque {
             ripple_per_rev,
             cogging_nm,
             cogging_per_rev,
+            cogging_phase_rad,
         })
     }
 
@@ -58,7 +61,8 @@ impl MotorTorque {
             torque_nm *= 1.0 + self.ripple * libm::sin(self.ripple_per_rev * angle_rad);
         }
         if self.cogging_nm > 0.0 {
-            torque_nm += self.cogging_nm * libm::sin(self.cogging_per_rev * angle_rad);
+            let phase_rad = self.cogging_per_rev * angle_rad + self.cogging_phase_rad;
+            torque_nm += self.cogging_nm * libm::sin(phase_rad);
         }
         torque_nm
     }
@@ -155,6 +159,21 @@ mod tests {
             }
         }
         assert!(MotorTorque::new(&axis()).is_none());
+    }
+
+    #[test]
+    fn a_phase_shifts_the_cogging() {
+        let motor = MotorTorque::new(&Axis {
+            cogging_nm: 0.04,
+            cogging_per_rev: 24.0,
+            cogging_phase_rad: 0.25 * TAU,
+            ..axis()
+        })
+        .unwrap();
+        for (turn, wanted) in [(0.0, 0.04), (1.0 / 96.0, 0.0), (1.0 / 48.0, -0.04)] {
+            let cogging = motor.at_nm(0.0, TAU * turn);
+            assert!((cogging - wanted).abs() < 1e-9, "{turn}: {cogging}");
+        }
     }
 
     #[test]

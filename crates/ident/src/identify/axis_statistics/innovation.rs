@@ -17,9 +17,8 @@
 
 use feedwright_control::{
     AxisModel, AxisState, DriveModel, DriveReference, DriveState, MechanicsModel, MechanicsState,
-    TableState,
+    Parameters, Periods, TableState,
 };
-use feedwright_sim::{KnownAxis, Period};
 
 use crate::spectrum::{Phasor, transformed};
 
@@ -113,9 +112,9 @@ impl Innovations {
 
 impl AxisFilter {
     /// Creates the filter of an axis whose encoder has at least this noise, rad.
-    pub(super) fn new(known: &KnownAxis, period: &Period, noise_rad: f64) -> Self {
-        let axis_model = AxisModel::new(known.nominal, period.periods());
-        let substeps = |s: f64| (s / period.mechanics_s).round().max(0.0) as u32;
+    pub(super) fn new(nominal: Parameters, periods: Periods, noise_rad: f64) -> Self {
+        let axis_model = AxisModel::new(nominal, periods);
+        let substeps = |s: f64| (s / periods.mechanics_s).round().max(0.0) as u32;
         let parameters = &axis_model.parameters;
         let mut filter = Self {
             drive: DriveModel::new(&axis_model),

@@ -24,8 +24,19 @@ use crate::spectrum::{
 
 /// Probability that a term is admitted although it is absent.
 const CHANCE: f64 = 1e-6;
+/// Fewest lines of cogging in a turn that are looked for: the poles and slots of a motor make six or
+/// more, and what friction leaves at each stroke looks like fewer.
+const LEAST_PER_REV: u32 = 4;
 /// Most lines of cogging in a turn that are looked for: four times the 50 teeth of a stepper.
 const MOST_PER_REV: u32 = 200;
+/// Factor of the gain that a wave needs where steps are the only noise of the encoder. Rounding of a
+/// constant speed makes lines in time, and they look like waves over the place: of 60 in 2 ln L on
+/// `coarse`, where chance gives 42.
+const STEPS_STRICTNESS: f64 = 5.0;
+/// Most lines of cogging in a turn where the turn may be another: 200 lines on half the lead.
+const MOST_PER_WAY: u32 = 400;
+/// Growth of 2 ln L by which lines that are no whole number are more likely: one variable more.
+const MORE_LIKELY: f64 = 20.0;
 /// Signal periods that are looked for, rad at the motor: 1 um and 0.2 mm of travel on a lead of 10
 /// mm.
 const SIGNAL_RAD: [f64; 2] = [TAU * 1e-4, TAU * 0.02];
@@ -63,6 +74,8 @@ pub(super) struct Weighed<'a> {
     responses: &'a [Vec<Phasor>; 2],
     /// 1 / S.
     weights: Vec<f64>,
+    /// Factor of the gain that a wave needs.
+    strictness: f64,
 }
 
 /// Input through which a wave acts.
@@ -75,13 +88,15 @@ pub(super) enum Through {
 }
 
 impl<'a> Weighed<'a> {
-    /// Weighs innovations by the spectrum of a noise. The responses cover `length` samples, a power
+    /// Weighs innovations by the spectrum of a noise. `is_steps` states that the encoder has no noise
+    /// but the rounding to its steps. The responses cover `length` samples, a power
     /// of two above the number of innovations.
     pub(super) fn new(
         innovations: &'a Innovations,
         responses: &'a [Vec<Phasor>; 2],
         noise: &NoiseFit,
         servo_s: f64,
+        is_steps: bool,
     ) -> Self {
         let length = responses[0].len();
         let [load, encoder] = responses;
@@ -101,26 +116,52 @@ impl<'a> Weighed<'a> {
             length,
             responses,
             weights: (0..length).map(weight).collect(),
+            strictness: if is_steps { STEPS_STRICTNESS } else { 1.0 },
         }
     }
 
-    /// Returns the cogging by lines in a turn, if it shows, and the gain in 2 ln L.
-    pub(super) fn cogging(&self, least_nm: f64) -> Option<(Wave, f64)> {
+    /// Returns the cogging, if it shows, and the gain in 2 ln L: by `known` lines in a turn, or by
+    /// any number of them. A whole number goes before others that are hardly more likely.
+    pub(super) fn cogging(&self, least_nm: f64, known: Option<f64>) -> Option<(Wave, f64)> {
+        if let Some(lines) = known {
+            return self.best(Through::Motor, vec![(lines, 0.0)], 1.0, least_nm);
+        }
         let adjoint = self.adjoint(Through::Motor);
         let middles: Vec<f64> = self.middles().collect();
-        let steps: Vec<Phasor> = middles.iter().map(|&angle_rad| turned(angle_rad)).collect();
         let information = self.information(&middles);
+        let least_information = f64::MIN_POSITIVE;
+        let informations: Vec<f64> = (0..=MOST_PER_WAY)
+            .map(|n| information(f64::from(n)).max(least_information))
+            .collect();
+        let whole = self.whole_lines(&adjoint, &middles, &informations, least_nm);
+        let any = self.any_lines(&adjoint, &middles, &informations, least_nm);
+        match (whole, any) {
+            (Some(whole), Some(any)) if any.1 < whole.1 + MORE_LIKELY => Some(whole),
+            (whole, any) => any.or(whole),
+        }
+    }
+
+    /// Returns the cogging by whole lines in a turn.
+    fn whole_lines(
+        &self,
+        adjoint: &[f64],
+        middles: &[f64],
+        informations: &[f64],
+        least_nm: f64,
+    ) -> Option<(Wave, f64)> {
+        let steps: Vec<Phasor> = middles.iter().map(|&angle_rad| turned(angle_rad)).collect();
         let mut turns: Vec<Phasor> = vec![[1.0, 0.0]; steps.len()];
         let mut candidates: Vec<(f64, f64)> = Vec::new();
-        for n in 1..=MOST_PER_REV {
+        for (n, information) in (1..=MOST_PER_REV).zip(&informations[1..]) {
             let mut score = [0.0; 2];
-            for ((turn, step), a) in turns.iter_mut().zip(&steps).zip(&adjoint) {
+            for ((turn, step), a) in turns.iter_mut().zip(&steps).zip(adjoint) {
                 *turn = times(*turn, *step);
                 score[0] += a * turn[0];
                 score[1] += a * turn[1];
             }
-            let gain = power(score) / information(f64::from(n)).max(f64::MIN_POSITIVE);
-            candidates.push((f64::from(n), gain));
+            if n >= LEAST_PER_REV {
+                candidates.push((f64::from(n), power(score) / information));
+            }
         }
         self.best(
             Through::Motor,
@@ -130,39 +171,60 @@ impl<'a> Weighed<'a> {
         )
     }
 
+    /// Returns the cogging of a motor whose turn is another than the axis model says: by any number
+    /// of lines.
+    fn any_lines(
+        &self,
+        adjoint: &[f64],
+        middles: &[f64],
+        informations: &[f64],
+        least_nm: f64,
+    ) -> Option<(Wave, f64)> {
+        let most = f64::from(MOST_PER_WAY);
+        let (unit, scores) = scan(middles, adjoint, TAU / most)?;
+        let last = ((most / unit) as usize).min(scores.len() / 3);
+        let range = (f64::from(LEAST_PER_REV) / unit).ceil() as usize..last;
+        let candidates: Vec<(f64, f64)> = range
+            .clone()
+            .map(|n| {
+                let lines = n as f64 * unit;
+                let (before, part) = (lines as usize, lines.fract());
+                let [a, b] =
+                    [before, before + 1].map(|n| informations[n.min(informations.len() - 1)]);
+                (lines, power(scores[n]) / (a + part * (b - a)))
+            })
+            .collect();
+        let tried = best_of(candidates, TRIED)
+            .into_iter()
+            .map(|(lines, gain)| (self.finest(middles, adjoint, lines, unit), gain))
+            .collect();
+        self.best(Through::Motor, tried, range.len() as f64, least_nm)
+    }
+
     /// Returns the interpolation error of an encoder with this step, and the gain in 2 ln L, like
     /// [`Self::cogging`].
-    pub(super) fn interpolation(&self, step_rad: f64, least_rad: f64) -> Option<(Wave, f64)> {
+    pub(super) fn interpolation(
+        &self,
+        step_rad: f64,
+        least_rad: f64,
+        known: Option<f64>,
+    ) -> Option<(Wave, f64)> {
+        if let Some(per_rad) = known {
+            return self.best(Through::Encoder, vec![(per_rad, 0.0)], 1.0, least_rad);
+        }
         let adjoint = self.adjoint(Through::Encoder);
         let angles = &self.innovations.angle_rad;
-        let ends = angles
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| {
-                [a.min(x), b.max(x)]
-            });
-        let way_rad = ends[1] - ends[0];
         let [shortest, longest] = SIGNAL_RAD;
         // The steps themselves repeat with place, too.
         let shortest = shortest.max(4.0 * step_rad);
-        // Four places in the shortest period, and half as much again beyond the way: the peak is
-        // never between two frequencies.
-        let places = ((4.0 * 1.5 * way_rad / shortest) as usize)
-            .next_power_of_two()
-            .min(MOST_PLACES);
-        let place_rad = 1.5 * way_rad / places as f64;
-        let mut binned = vec![[0.0; 2]; places];
-        for (angle_rad, a) in angles.iter().zip(&adjoint) {
-            binned[(((angle_rad - ends[0]) / place_rad) as usize).min(places - 1)][0] += a;
-        }
-        transform(&mut binned);
-        let unit = TAU / (place_rad * places as f64);
-        let range =
-            (TAU / longest / unit) as usize..((TAU / shortest / unit) as usize).min(places / 3);
+        let (unit, scores) = scan(angles, &adjoint, shortest)?;
+        let range = (TAU / longest / unit) as usize
+            ..((TAU / shortest / unit) as usize).min(scores.len() / 3);
         let candidates: Vec<(f64, f64)> = range
             .clone()
-            .map(|n| (n as f64 * unit, power(binned[n])))
+            .map(|n| (n as f64 * unit, power(scores[n])))
             .collect();
-        let fine = |per_rad: f64| self.finest(&adjoint, per_rad, unit);
+        let fine = |per_rad: f64| self.finest(angles, &adjoint, per_rad, unit);
         let tried = best_of(candidates, TRIED)
             .into_iter()
             .map(|(per_rad, gain)| (fine(per_rad), gain))
@@ -171,19 +233,13 @@ impl<'a> Weighed<'a> {
     }
 
     /// The frequency near one at which the score is greatest, by golden section.
-    fn finest(&self, adjoint: &[f64], per_rad: f64, unit: f64) -> f64 {
+    fn finest(&self, angles: &[f64], adjoint: &[f64], per_rad: f64, unit: f64) -> f64 {
         let score = |per_rad: f64| {
             let add = |sum: Phasor, (angle, a): (&f64, &f64)| {
                 let [cos, sin] = turned(per_rad * angle);
                 [sum[0] + a * cos, sum[1] + a * sin]
             };
-            power(
-                self.innovations
-                    .angle_rad
-                    .iter()
-                    .zip(adjoint)
-                    .fold([0.0; 2], add),
-            )
+            power(angles.iter().zip(adjoint).fold([0.0; 2], add))
         };
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let (mut low, mut high) = (per_rad - unit, per_rad + unit);
@@ -212,7 +268,7 @@ impl<'a> Weighed<'a> {
         looked_at: f64,
         least: f64,
     ) -> Option<(Wave, f64)> {
-        let least_gain = 2.0 * libm::log(looked_at / CHANCE);
+        let least_gain = self.strictness * 2.0 * libm::log(looked_at / CHANCE);
         let error = self.innovations_transformed();
         best_of(candidates, TRIED)
             .into_iter()
@@ -397,6 +453,33 @@ impl<'a> Weighed<'a> {
             8.0 * steps.iter().step_by(8).map(at).sum::<f64>()
         }
     }
+}
+
+/// Returns the scores of waves over these angles whose numbers of turns in a radian, times 2 pi, are
+/// multiples of a unit, and that unit: up to waves of the period `shortest_rad` and somewhat beyond.
+/// `None` if the angles are all the same.
+fn scan(angles: &[f64], adjoint: &[f64], shortest_rad: f64) -> Option<(f64, Vec<Phasor>)> {
+    let ends = angles
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| {
+            [a.min(x), b.max(x)]
+        });
+    let way_rad = ends[1] - ends[0];
+    if way_rad.is_nan() || way_rad <= 0.0 {
+        return None;
+    }
+    // Four places in the shortest period, and half as much again beyond the way: the peak is never
+    // between two frequencies.
+    let places = ((4.0 * 1.5 * way_rad / shortest_rad) as usize)
+        .next_power_of_two()
+        .min(MOST_PLACES);
+    let place_rad = 1.5 * way_rad / places as f64;
+    let mut binned = vec![[0.0; 2]; places];
+    for (angle_rad, a) in angles.iter().zip(adjoint) {
+        binned[(((angle_rad - ends[0]) / place_rad) as usize).min(places - 1)][0] += a;
+    }
+    transform(&mut binned);
+    Some((TAU / (place_rad * places as f64), binned))
 }
 
 /// Returns the local maxima with the greatest gain.

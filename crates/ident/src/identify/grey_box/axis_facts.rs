@@ -35,6 +35,10 @@ pub struct AxisFacts {
     pub acceleration_feedforward: Option<KnownValue>,
     /// Delay from the position loop to the drive, s.
     pub drive_delay_s: Option<KnownValue>,
+    /// Signal period of the encoder, mm of travel. Without it, the record has to show it.
+    pub signal_period_mm: Option<f64>,
+    /// Periods of the cogging in a turn of the motor. Without it, the record has to show it.
+    pub cogging_per_rev: Option<f64>,
     /// Model from an earlier log. Terms that this log does not determine keep its values.
     pub before: Option<TermValues>,
 }
@@ -81,11 +85,21 @@ impl AxisFacts {
     pub fn or_of(self, axis: &Axis, servo_s: f64) -> Self {
         let is_same_unit =
             self.lead_mm_per_rev.is_some() || (self.inertia.is_none() && self.viscous.is_none());
+        let stated = |value: f64| Some(value).filter(|value| *value > 0.0);
         let kept = |given: Option<f64>, axis: f64| given.or_else(|| is_same_unit.then_some(axis));
         Self {
             inertia: kept(self.inertia, axis.inertia_kg_m2),
             viscous: kept(self.viscous, axis.viscous_friction_nm_s),
             lead_mm_per_rev: kept(self.lead_mm_per_rev, axis.lead_mm_per_rev),
+            signal_period_mm: self
+                .signal_period_mm
+                .or_else(|| stated(1e-3 * axis.signal_period_um)),
+            cogging_per_rev: self.cogging_per_rev.or_else(|| {
+                let is_same_lead = self
+                    .lead_mm_per_rev
+                    .is_none_or(|lead| lead == axis.lead_mm_per_rev);
+                stated(axis.cogging_per_rev).filter(|_| is_same_lead)
+            }),
             before: Some(TermValues::of_axis(axis, servo_s)),
             ..self
         }

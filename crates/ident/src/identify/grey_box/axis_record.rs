@@ -71,6 +71,15 @@ impl AxisRecord<'_> {
         )
     }
 
+    /// Highest speed of the command, mm/s, and acceleration, mm/s2.
+    pub(super) fn most(&self) -> [f64; 2] {
+        [self.command_speed_mm_s(), self.command_acceleration_mm_s2()].map(|values| {
+            values
+                .iter()
+                .fold(0.0_f64, |most, value| most.max(value.abs()))
+        })
+    }
+
     /// Slopes of a sequence by differences over a reach to both sides, within its stretch.
     pub(super) fn slopes(&self, values: &[f64], reach: usize) -> Vec<f64> {
         let mut slopes = vec![0.0; values.len()];

@@ -50,7 +50,7 @@ impl<'a> Commands<'a> {
     /// Returns the command at a time, in samples since the start of the stretch. Beyond an end it
     /// returns the command at that end.
     #[inline]
-    fn at_mm(&self, samples: f64) -> f64 {
+    pub(super) fn at_mm(&self, samples: f64) -> f64 {
         let last = self.mm.len() - 1;
         let before = samples.floor();
         if before < 0.0 {

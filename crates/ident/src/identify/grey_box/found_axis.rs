@@ -7,6 +7,7 @@ use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
 use super::free_run_scores::AxisScores;
 use super::gain_changes::GainChange;
+use super::place_waves::{PlaceWaves, WaveModel};
 use super::residual_noise::ResidualNoise;
 use super::search_bound::SearchBound;
 use super::standard_errors::HALF_INTERVAL;
@@ -14,6 +15,7 @@ use super::terms::{ModelTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
 use super::unseen_motion::UnseenMotion;
 use crate::identify::Rng;
+use crate::identify::axis_statistics::KnownWaves;
 
 /// Source of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,6 +91,8 @@ pub struct FoundAxis {
     pub unseen: UnseenMotion,
     /// Residual of its free run, as a load; `None` where it is no more than the encoder noise.
     pub residual: Option<ResidualNoise>,
+    /// Deviations that repeat with place.
+    pub waves: PlaceWaves,
     /// Effects of other settings of its drive.
     pub gain_changes: Vec<GainChange>,
     /// RMS of noise of the encoder beside its steps, um.
@@ -341,7 +345,74 @@ impl FoundAxis {
             None,
             of_kv,
         ));
+        numbers.extend(self.of_waves());
         numbers
+    }
+
+    /// Numbers of what repeats with place.
+    fn of_waves(&self) -> Vec<FoundNumber> {
+        let identified = |key, name, unit, value| FoundNumber {
+            key,
+            name,
+            unit,
+            value,
+            interval: None,
+            source: NumberSource::Identified,
+        };
+        let given = |number: FoundNumber, is_given: bool| FoundNumber {
+            source: if is_given {
+                NumberSource::Given
+            } else {
+                number.source
+            },
+            ..number
+        };
+        let interpolation = self.waves.interpolation.map(|wave| {
+            let period = identified(
+                "signal_period_um",
+                "signal period",
+                "um",
+                1e3 * wave.period_mm,
+            );
+            [
+                identified(
+                    "interpolation_error_um",
+                    "interpolation error",
+                    "um",
+                    wave.amplitude,
+                ),
+                given(period, self.facts.signal_period_mm.is_some()),
+                identified(
+                    "interpolation_phase_rad",
+                    "its phase at zero",
+                    "rad",
+                    wave.phase_rad,
+                ),
+            ]
+        });
+        let cogging = self.waves.cogging.map(|wave| {
+            let period = identified("cogging_period_mm", "its period", "mm", wave.period_mm);
+            [
+                identified(
+                    "cogging_over_j_mm_s2",
+                    "cogging / J",
+                    "mm/s2",
+                    wave.amplitude,
+                ),
+                given(period, self.facts.cogging_per_rev.is_some()),
+                identified(
+                    "cogging_phase_rad",
+                    "its phase at zero",
+                    "rad",
+                    wave.phase_rad,
+                ),
+            ]
+        });
+        [interpolation, cogging]
+            .into_iter()
+            .flatten()
+            .flatten()
+            .collect()
     }
 
     fn number(&self, term: ModelTerm, value: f64) -> FoundNumber {
@@ -390,17 +461,20 @@ impl FoundAxis {
         }
     }
 
-    /// Highest speed and acceleration of the command.
-    pub(super) fn most(record: &AxisRecord<'_>) -> [f64; 2] {
-        [
-            record.command_speed_mm_s(),
-            record.command_acceleration_mm_s2(),
-        ]
-        .map(|values| {
-            values
-                .iter()
-                .fold(0.0_f64, |most, value| most.max(value.abs()))
-        })
+    /// Finds what repeats with place in the record of the axis.
+    pub(super) fn waves_in(&self, record: &AxisRecord<'_>) -> PlaceWaves {
+        let rad_per_mm = self.rad_per_mm();
+        let per_rad = |period_mm: f64| std::f64::consts::TAU / (period_mm * rad_per_mm);
+        let model = WaveModel {
+            values: &self.values,
+            most: self.most,
+            rad_per_mm,
+            known: KnownWaves {
+                signal_per_rad: self.facts.signal_period_mm.map(per_rad),
+                cogging_per_rev: self.facts.cogging_per_rev,
+            },
+        };
+        model.waves(record)
     }
 }
 

@@ -9,6 +9,7 @@ use super::found_axis::{FoundAxis, ResolvedModel};
 use super::free_run_scores::{AxisScores, score};
 use super::gain_changes::GainChange;
 use super::output_error::{DONE, NEARLY_DONE, OutputErrors, square};
+use super::place_waves::PlaceWaves;
 use super::priors::Prior;
 use super::residual_noise::ResidualNoise;
 use super::sample_split::SampleSplit;
@@ -100,7 +101,7 @@ pub(super) fn find(
         ))
         .collect();
     let scores = score(record, &values, &split.fit, &split.score);
-    let (noise_um, most) = (noise_um(record), FoundAxis::most(record));
+    let (noise_um, most) = (noise_um(record), record.most());
     let found = FoundAxis {
         name: record.name.to_owned(),
         at_bounds,
@@ -110,6 +111,7 @@ pub(super) fn find(
         facts,
         fit_um: 1e3 * rms_mm,
         unseen: UnseenMotion::of(&errors, &values, &terms, rms_mm, most),
+        waves: PlaceWaves::default(),
         residual: residual(record, &values, &scores, noise_um),
         gain_changes: GainChange::find(record, &values, &split.score),
         scores,

@@ -165,7 +165,7 @@ fn job(name: String, args: &LogArgs) -> LogJob {
         velocity_feedforward: args.velocity_feedforward,
         acceleration_feedforward: args.acceleration_feedforward,
         drive_delay_s: args.drive_delay,
-        before: None,
+        ..AxisFacts::default()
     };
     LogJob {
         name,
