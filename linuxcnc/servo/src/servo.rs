@@ -532,7 +532,10 @@ impl<const N: usize> Servo<N> {
         self.controller.hold_to(OffsetBounds {
             largest_mm: bounds.deviation_mm,
             fastest_mm_s: bounds.speed_mm_s,
-            acceleration_mm_s2: bounds.command_mm_s2.into_iter().fold(f64::INFINITY, f64::min),
+            acceleration_mm_s2: bounds
+                .command_mm_s2
+                .into_iter()
+                .fold(f64::INFINITY, f64::min),
         });
         self.tick.hold_to(bounds);
         self.tick

@@ -8,8 +8,7 @@
 //! ```
 //!
 //! With the model of the filter, innovations are white, and their variance is S = R / (1 - k1), where
-//! k1 is the gain of the angle. The interpolation error of the encoder adds half of its squared
-//! amplitude to R, averaged over its period. f forgets over [`REMEMBERED`] periods: an estimated load
+//! k1 is the gain of the angle. f forgets over [`REMEMBERED`] periods: an estimated load
 //! is a random walk, and has no variance of its own.
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 8.1, for the

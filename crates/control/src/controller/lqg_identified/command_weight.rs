@@ -69,6 +69,12 @@ impl CommandModel {
         }
     }
 
+    /// Returns the offset for a unit of reference speed, s.
+    pub(super) fn by_speed_s(&self) -> f64 {
+        let [k0, ..] = self.of_commands;
+        1.0 / k0
+    }
+
     /// Returns v - v_r by each state, without K0 o.
     fn row(&self) -> [f64; REGULATED] {
         let Self {

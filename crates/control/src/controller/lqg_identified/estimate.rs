@@ -231,13 +231,11 @@ impl FilterModel {
     pub(super) fn innovations(&self) -> ([f64; STATES], f64, u32) {
         let gains = self.gains_as_given();
         let [of_angle, ..] = gains;
-        let parameters = &self.axis_model.parameters;
-        let interpolation_rad = parameters.interpolation_rad;
-        let shown_rad2 = measured_rad2(parameters) + 0.5 * interpolation_rad * interpolation_rad;
+        let stated_rad2 = measured_rad2(&self.axis_model.parameters);
         let (periods, _) = self.acting();
         (
             gains,
-            shown_rad2 / (1.0 - of_angle).max(LEAST_SHARE_LEFT),
+            stated_rad2 / (1.0 - of_angle).max(LEAST_SHARE_LEFT),
             periods as u32,
         )
     }

@@ -20,6 +20,9 @@ use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 use crate::controller::OffsetBounds;
 
+/// Part of the acceleration of an axis that its command may take against cogging.
+const COGGING_SHARE: f64 = 0.1;
+
 /// Stationary gains of an axis, by state as in `lqg_identified/linear.rs`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LqgGains {
@@ -765,21 +768,37 @@ impl AxisLqg {
         ]
     }
 
-    /// Returns the reference speed that cogging takes along the reference in the period in which
-    /// the present command acts, mm/s; by Simpson's rule.
+    /// Returns the reference speed that cogging takes along the reference, mm/s: its mean over the
+    /// period in which the present command acts. If the command would need too much acceleration
+    /// for all of it, a part is left to the regulator.
     fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
         let (parameters, servo_s) = (
-            self.model.axis_model.parameters,
+            &self.model.axis_model.parameters,
             self.model.axis_model.periods.servo_s,
         );
-        let cogging_nm = |n: f64| {
-            self.model.cogging_nm(
-                at_mm(self.model.axis_model.parameters.drive_delay_s + n * servo_s)
-                    * parameters.rad_per_mm,
-            )
+        if parameters.cogging_nm == 0.0 {
+            return 0.0;
+        }
+        let [from_rad, to_rad] = [0.0, servo_s]
+            .map(|after_s| parameters.rad_per_mm * at_mm(parameters.drive_delay_s + after_s));
+        let half_rad = 0.5 * parameters.cogging_per_rev * (to_rad - from_rad);
+        let mean = if half_rad == 0.0 {
+            1.0
+        } else {
+            libm::sin(half_rad) / half_rad
         };
-        let mean_nm = (cogging_nm(0.0) + 4.0 * cogging_nm(0.5) + cogging_nm(1.0)) / 6.0;
-        -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
+        let mean_nm = mean * self.model.cogging_nm(0.5 * (from_rad + to_rad));
+        let by_torque = 1.0 / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
+        let swings_1_s = 2.0 * half_rad / servo_s;
+        let offset_mm = by_torque * parameters.cogging_nm * self.command_model.by_speed_s();
+        let takes_mm_s2 = offset_mm * swings_1_s * swings_1_s;
+        let room_mm_s2 = COGGING_SHARE * self.bounds.acceleration_mm_s2;
+        let part = if takes_mm_s2 > room_mm_s2 {
+            room_mm_s2 / takes_mm_s2
+        } else {
+            1.0
+        };
+        -part * by_torque * mean_nm
     }
 
     /// Returns the offset for which the position loop requests a reference speed, once it has the
