@@ -75,6 +75,7 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgIdentified<N> {
     let bounds = OffsetBounds {
         largest_mm: 0.5,
         fastest_mm_s: 400.0,
+        acceleration_mm_s2: 2000.0,
     };
     let settings = LqgSettings::identified(IDENTIFIED_WEIGHT.default, 1e-3, bounds);
     LqgIdentified::new([AxisModel::new(axis, periods); N], settings)

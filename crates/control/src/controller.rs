@@ -98,6 +98,10 @@ pub trait Controller<const N: usize> {
 macro_rules! members {
     ($($Name:ident($Type:ty)),* $(,)?) => {
         /// A controller of the table.
+        #[expect(
+            clippy::large_enum_variant,
+            reason = "there is one controller, and a servo thread must not allocate"
+        )]
         #[derive(Debug, Clone)]
         pub enum AnyController<const N: usize> {
             $(#[doc = concat!("[`", stringify!($Name), "`].")] $Name($Type)),*

@@ -58,7 +58,7 @@ mod dose;
 pub(crate) mod engagement;
 
 use crate::command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
-use crate::vector::add_scaled;
+use crate::vector::{add_scaled, sub};
 use crate::window::Window;
 use benefit::Benefit;
 pub use bounds::Bounds;
@@ -82,12 +82,10 @@ pub(crate) struct Supervisor<const N: usize> {
     benefit: Benefit<N>,
     engagement: Engagement,
     /// Commanded part of an offset that acts at once.
-    dose: Dose,
+    dose: Dose<N>,
     /// True if a correction is wanted at all.
     allowed: bool,
     held: bool,
-    /// True if the acceleration of the axes keeps the command from the due offset.
-    is_cut_off: bool,
     /// Acceleration of the last command, mm/s2.
     last_mm_s2: [f64; N],
 }
@@ -104,7 +102,6 @@ impl<const N: usize> Supervisor<N> {
             dose: Dose::ALL,
             allowed: true,
             held: false,
-            is_cut_off: false,
             last_mm_s2: [0.0; N],
         }
     }
@@ -171,6 +168,7 @@ impl<const N: usize> Supervisor<N> {
         });
         let asked = match state {
             _ if report.acts_at_once => {
+                self.dose.learn(report.learned);
                 if state != before && state != State::Shadow {
                     self.dose.turn(
                         if is_known {
@@ -190,7 +188,7 @@ impl<const N: usize> Supervisor<N> {
         let command = self
             .bounds
             .hold(window, asked, self.rate, report.acts_at_once);
-        self.held = state == State::Engaged && (command != asked || self.is_cut_off);
+        self.held = state == State::Engaged && (command != asked || self.dose.is_reduced());
         self.rate = command.rate;
         self.last_mm_s2 = Bounds::commanded_mm_s2(window, command.offset_mm);
         command
@@ -225,7 +223,10 @@ impl<const N: usize> Supervisor<N> {
             }
         };
         let offset_mm = self.bounds.accelerated_mm(window, due_mm, self.last_mm_s2);
-        self.is_cut_off = offset_mm != due_mm;
+        // What is cut off by the limits of the axes alone is soon made up: the plan leaves room.
+        if self.bounds.engaged_mm_s2 < f64::INFINITY {
+            self.dose.take_in(sub(due_mm, offset_mm), period_s);
+        }
         Command {
             offset_mm,
             ..if is_in { *wanted } else { Command::AS_PLANNED }

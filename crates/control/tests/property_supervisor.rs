@@ -12,12 +12,13 @@ const SERVO_PERIODS: u32 = 5;
 const FEED_PERIOD_S: f64 = 0.005;
 const RADIUS_MM: f64 = 10.0;
 const FEED_MM_S: f64 = 50.0;
-const BOUNDS: Bounds = Bounds {
+const BOUNDS: Bounds<2> = Bounds {
     deviation_mm: 0.2,
     speed_mm_s: 200.0,
     acceleration_mm_s2: 5000.0,
     fade_mm_s2: FADE_MM_S2,
     engaged_mm_s2: f64::INFINITY,
+    command_mm_s2: [f64::INFINITY; 2],
     fastest: 3.0,
 };
 /// Acceleration of a fade, mm/s2.
@@ -479,6 +480,39 @@ proptest! {
             }
         }
         prop_assert!(offsets.iter().any(|offset| norm(*offset) > 0.0));
+    }
+    /// The acceleration of an axis holds for path and offset together, and so does a change of it
+    /// by as much in a servo period: a command does not alternate.
+    #[test]
+    fn a_command_keeps_the_acceleration_of_its_axes(
+        amplitude_mm in prop::array::uniform2(-0.1..0.1_f64),
+        hz in prop::array::uniform2(0.2..250.0_f64),
+        // From what the path takes on.
+        share in 1.01..100.0_f64,
+    ) {
+        let limit_mm_s2 = share * FEED_MM_S * FEED_MM_S / RADIUS_MM;
+        let mut controller = Wild { amplitude_mm, hz, moved_mm: [0.0; 2], period: 0 };
+        let bounds = Bounds { command_mm_s2: [limit_mm_s2; 2], ..BOUNDS };
+        let mut tick = Tick::new(SERVO_S, controller.schedule(), bounds);
+        let (mut tool_mm, mut commands) = ([0.0; 2], Vec::new());
+        for _ in 0..2000 {
+            let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
+            commands.push((setpoint.command_mm, setpoint.path.position_mm));
+            for axis in 0..2 {
+                tool_mm[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool_mm[axis]);
+            }
+        }
+        // The path begins with a leap.
+        let most_mm = SERVO_S * SERVO_S * limit_mm_s2 + ROUNDING_MM;
+        for four in commands[10..].windows(4) {
+            for axis in 0..2 {
+                let bend = |n: usize, of: &dyn Fn(usize) -> f64| of(n + 2) - 2.0 * of(n + 1) + of(n);
+                let bend_mm = |n: usize| bend(n, &|n| four[n].0[axis]);
+                let is_path = (bend_mm(1) - bend(1, &|n| four[n].1[axis])).abs() <= ROUNDING_MM;
+                prop_assert!(bend_mm(1).abs() <= most_mm, "{} mm/s2", bend_mm(1) / (SERVO_S * SERVO_S));
+                prop_assert!((bend_mm(1) - bend_mm(0)).abs() <= most_mm || is_path, "{} and {} mm/s2 of {limit_mm_s2}", bend_mm(0) / (SERVO_S * SERVO_S), bend_mm(1) / (SERVO_S * SERVO_S));
+            }
+        }
     }
 }
 

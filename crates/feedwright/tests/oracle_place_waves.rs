@@ -8,8 +8,8 @@ use crate::sweep::part_or_whole;
 use feedwright::recorded_machine;
 use feedwright_gcode::Program;
 use feedwright_ident::{
-    AxisRecord, Columns, ExciteOptions, Log, PlaceWave, PlaceWaves, excitation_program,
-    place_waves, recorded_log,
+    Columns, ExciteOptions, Log, PlaceWave, PlaceWaves, excitation_program, place_waves,
+    recorded_log,
 };
 use feedwright_sim::{Axis, Machine};
 
@@ -36,22 +36,15 @@ fn log_of(machine: &Machine, seed: u64) -> Log {
 fn shown(machine: &Machine, log: &Log, late: usize) -> Vec<PlaceWaves> {
     let built_in = Machine::load(machine.name.as_ref()).unwrap();
     let (model, _) = recorded_machine(&built_in, 2, 1, &()).unwrap();
-    let axes = log.axes.iter().zip(&model.axes);
-    axes.map(|(axis, model_axis)| {
-        let mut actual_mm = vec![axis.actual_mm[0]; late];
-        actual_mm.extend(&axis.actual_mm[..axis.actual_mm.len() - late]);
-        let record = AxisRecord {
-            name: &axis.name,
-            sample_s: log.sample_time_s,
-            stretches: &log.stretches,
-            command_mm: &axis.command_mm,
-            actual_mm: &actual_mm,
-            step_mm: axis.step_mm,
-        };
-        let late_s = late as f64 * log.sample_time_s;
-        place_waves(&record, model_axis, model.period.servo_s, late_s)
-    })
-    .collect()
+    let mut log = log.clone();
+    for axis in &mut log.axes {
+        let end = axis.actual_mm.len() - late;
+        let first_mm = axis.actual_mm[0];
+        axis.actual_mm.copy_within(..end, late);
+        axis.actual_mm[..late].fill(first_mm);
+    }
+    let late_s = late as f64 * log.sample_time_s;
+    place_waves(&log, &model.axes, model.period.servo_s, late_s)
 }
 
 /// Asserts that a wave is as it should be: its amplitude within a part, its phase at zero within

@@ -443,7 +443,7 @@ pub(super) fn lqg_preview<const N: usize>(
 ) -> Box<dyn Controller<N>> {
     let settings = LqgSettings {
         control_weight_s2: values(&CONTROL_WEIGHT),
-        bounds: OffsetBounds {
+        bounds: feedwright_control::OffsetBounds {
             acceleration_mm_s2: f64::INFINITY,
             ..setup.offset_bounds()
         },

@@ -327,7 +327,7 @@ impl<const N: usize> Servo<N> {
         };
         Bounds {
             fade_mm_s2,
-            command_mm_s2: [engaged_mm_s2; N],
+            engaged_mm_s2,
             ..Bounds::new(self.deviation_mm(), speed_mm_s, 0.0)
         }
     }
@@ -532,10 +532,7 @@ impl<const N: usize> Servo<N> {
         self.controller.hold_to(OffsetBounds {
             largest_mm: bounds.deviation_mm,
             fastest_mm_s: bounds.speed_mm_s,
-            acceleration_mm_s2: bounds
-                .command_mm_s2
-                .into_iter()
-                .fold(f64::INFINITY, f64::min),
+            ..OffsetBounds::NONE
         });
         self.tick.hold_to(bounds);
         self.tick

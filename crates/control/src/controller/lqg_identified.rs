@@ -427,6 +427,8 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
         self.asked_mm = offset_mm;
         let share = self.first_use.as_ref().map_or(1.0, FirstUse::share);
         let offset_mm = if share < 1.0 {
+            // The regulator must not make up for the part that is left out.
+            self.axes.iter_mut().for_each(AxisLqg::forget_decision);
             scale(share, offset_mm)
         } else {
             offset_mm

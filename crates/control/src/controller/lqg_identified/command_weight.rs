@@ -125,6 +125,11 @@ impl CommandHistory {
         ]);
     }
 
+    /// Forgets the decided command.
+    pub(super) fn forget_decision(&mut self) {
+        self.decided_rad = None;
+    }
+
     /// Takes in a sent command, which a bound may have changed. Without a decision it counts as
     /// ideal.
     pub(super) fn sent(&mut self, command_rad: f64) {

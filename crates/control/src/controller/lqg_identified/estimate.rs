@@ -20,6 +20,7 @@ use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 use crate::supervisor::outliers::{self, Outliers};
 use crate::supervisor::whiteness::{LEVELS, Whiteness};
 
+use super::control_weight::LqgSettings;
 use super::gain_table::GainTable;
 use super::linear::{LinearAxis, STATES, measured_rad2};
 use super::riccati::{StateMatrix, applied, filter};
@@ -31,12 +32,6 @@ pub(super) const KEPT_PERIODS: usize = 48;
 /// Innovations that are smaller than this part of the measurement's noise are not used for
 /// learning.
 const LEAST_SHARE: f64 = 0.01;
-
-/// Variance of the measurement that a filter assumes whose model may be wrong, times the stated one:
-/// the less it follows a measurement, the larger are the margins of the loop. With 16 the gain
-/// margin on `workshop` is 2.0 and its phase margin 40 degrees, with 4 they are 1.7 and 31 degrees,
-/// with 1 1.5 and 25.
-const ASSUMED: f64 = 16.0;
 
 /// Smallest part of an innovation that counts as noise of the measurement.
 const LEAST_SHARE_LEFT: f64 = 1e-6;
@@ -181,8 +176,8 @@ fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -
 }
 
 impl FilterModel {
-    /// Creates the model of an axis. If it `learns`, it also has gains for other statistics.
-    pub(super) fn new(axis_model: AxisModel, learns: bool) -> Self {
+    /// Creates the model of an axis. If the controller learns, it also has gains for other statistics.
+    pub(super) fn new(axis_model: AxisModel, settings: &LqgSettings) -> Self {
         let AxisModel {
             parameters,
             periods,
@@ -193,12 +188,8 @@ impl FilterModel {
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
         let gains = |variance_rad2: f64| filter(&states, &noise, &measured, variance_rad2);
-        let filtered_rad2 = if learns {
-            ASSUMED * measured_rad2(parameters)
-        } else {
-            measured_rad2(parameters)
-        };
-        let gains = if learns {
+        let filtered_rad2 = settings.assumed_noise() * measured_rad2(parameters);
+        let gains = if settings.learns {
             GainTable::new(filtered_rad2, gains)
         } else {
             GainTable::constant(gains(filtered_rad2))

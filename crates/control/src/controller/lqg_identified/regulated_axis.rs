@@ -218,7 +218,7 @@ impl ModelRun {
 impl AxisLqg {
     /// Creates an axis from its model.
     pub(super) fn new(axis_model: AxisModel, settings: LqgSettings) -> Self {
-        let model = FilterModel::new(axis_model, settings.learns);
+        let model = FilterModel::new(axis_model, &settings);
         let regulated = command_weight::regulated_axis(&axis_model);
         let command_model = CommandModel::new(&axis_model);
         let control_weight_s2 = settings.lowest_control_weight_s2(&axis_model.parameters);
@@ -665,6 +665,13 @@ impl AxisLqg {
             );
         }
         offset_mm
+    }
+
+    /// Forgets the command that was decided last: another one is sent, and counts as ideal.
+    pub(super) fn forget_decision(&mut self) {
+        if let Some(running) = &mut self.state {
+            running.commands.forget_decision();
+        }
     }
 
     /// Returns the reference speed of the axis without any offset, and the deviation of the axis

@@ -174,6 +174,10 @@ impl<const N: usize> Shaped<N> {
     /// Takes in the reference as far as it is known. The ideal command of each axis may accelerate
     /// by `limit_mm_s2`; `needed_s` is the time from now up to which the result is needed.
     pub(super) fn take_in(&mut self, window: &Window<'_, N>, limit_mm_s2: f64, needed_s: f64) {
+        if limit_mm_s2 == f64::INFINITY {
+            self.first = None;
+            return;
+        }
         let (now, _) = window.preview.place(window.tau_s);
         let [_, ahead] = window.range();
         let known = now + u64::from(ahead.unsigned_abs());
@@ -190,11 +194,7 @@ impl<const N: usize> Shaped<N> {
         if needed + BEHIND as u64 > known {
             let room = known.saturating_sub(needed) as usize;
             let fitting = self.kernels.iter().rposition(|kernel| kernel.half <= room);
-            let kernel = self.kernels[if limit_mm_s2 < f64::INFINITY {
-                fitting.unwrap_or(0)
-            } else {
-                0
-            }];
+            let kernel = self.kernels[fitting.unwrap_or(0)];
             while self.next + kernel.half as u64 <= known {
                 self.points_mm[(self.next % KEPT as u64) as usize] =
                     kernel.at(self.next, reference);

@@ -16,6 +16,7 @@ use super::axis_record::AxisRecord;
 use super::axis_run::{Commands, periods};
 use super::terms::{ModelTerm, TermValues};
 use crate::identify::axis_statistics::{KnownWaves, of_axis};
+use crate::log::Log;
 
 /// A sine over the position of the axis: amplitude times sin(2 pi x / period + phase).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,22 +41,26 @@ pub struct PlaceWaves {
 /// Torque limit where the record never came to one, times what its motions took.
 const SPARE: f64 = 10.0;
 
-/// Finds what repeats with place in the record of an axis, by the model of the axis in a machine file
-/// with this servo period. Actual positions are recorded `record_delay_s` later than the commands.
-/// Periods that the file states are not used.
-pub fn place_waves(
-    record: &AxisRecord<'_>,
-    axis: &Axis,
-    servo_s: f64,
-    record_delay_s: f64,
-) -> PlaceWaves {
-    let model = WaveModel {
-        values: &TermValues::of_axis(axis, servo_s).with(ModelTerm::RecordDelay, record_delay_s),
-        most: record.most(),
-        rad_per_mm: axis.rad_per_mm(),
-        known: KnownWaves::default(),
+/// Finds what repeats with place in a log, for each axis by its model in a machine file with this
+/// servo period. Actual positions are recorded `record_delay_s` later than the commands. Periods
+/// that the file states are not used.
+pub fn place_waves(log: &Log, axes: &[Axis], servo_s: f64, record_delay_s: f64) -> Vec<PlaceWaves> {
+    let waves = |(record, axis): (AxisRecord<'_>, &Axis)| {
+        let values =
+            TermValues::of_axis(axis, servo_s).with(ModelTerm::RecordDelay, record_delay_s);
+        let model = WaveModel {
+            values: &values,
+            most: record.most(),
+            rad_per_mm: axis.rad_per_mm(),
+            known: KnownWaves::default(),
+        };
+        model.waves(&record)
     };
-    model.waves(record)
+    AxisRecord::of(log)
+        .into_iter()
+        .zip(axes)
+        .map(waves)
+        .collect()
 }
 
 /// Model of an axis, with which the waves are found.
