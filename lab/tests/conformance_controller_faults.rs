@@ -136,7 +136,7 @@ fn controller(machine: &Machine, name: &str) -> Box<dyn Controller<2>> {
     Make::<2>::make(CONTROLLERS.find(name).unwrap(), &mut setup)
 }
 
-fn bounds(machine: &Machine) -> Bounds {
+fn bounds<const N: usize>(machine: &Machine) -> Bounds<N> {
     let accel_mm_s2 = machine
         .correction_accel_mm_s2(0)
         .min(machine.correction_accel_mm_s2(1));
@@ -350,7 +350,7 @@ fn assumed_wrong(machine: &Machine, times: usize, (name, fault): (&str, Fault)) 
         1e3 * most(|o| o.largest_mm),
         1e3 * open_mm
     );
-    let accel_mm_s2 = bounds(machine).fade_mm_s2 * (1.0 + ROUNDING);
+    let accel_mm_s2 = bounds::<2>(machine).fade_mm_s2 * (1.0 + ROUNDING);
     // The way back adds to what the controller asks for anyway.
     let back_mm_s2 = CAUTIOUS * usual_mm_s2 + accel_mm_s2;
     let beyond_mm = if fault == Fault::Frozen {
