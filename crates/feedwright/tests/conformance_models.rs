@@ -241,7 +241,7 @@ fn what_was_learned_of_a_machine_that_differs_from_its_model_is_written() {
     let [uncorrected, corrected] =
         [0, 1].map(|run| result["runs"][run]["joint_rms_um"].as_f64().unwrap());
     assert!(
-        corrected < 0.03 * uncorrected,
+        corrected < 0.05 * uncorrected,
         "{corrected} of {uncorrected}"
     );
     let transitions = result["runs"][1]["transitions"].as_array().unwrap();

@@ -372,10 +372,16 @@ impl Machine {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Acceleration that every axis may have in its command, mm/s2.
+    /// Acceleration that the command of the i-th axis may have with a correction in the loop, mm/s2:
+    /// its limit, and what the owner allows the correction beyond it.
+    pub(crate) fn axis_command_accel_mm_s2(&self, i: usize) -> f64 {
+        self.accel_limit_mm_s2(i) + self.axis(i).correction_accel_mm_s2.unwrap_or(0.0)
+    }
+
+    /// The smallest of these accelerations of all axes, mm/s2.
     pub fn command_accel_mm_s2(&self) -> f64 {
         (0..self.axis_count())
-            .map(|i| self.accel_limit_mm_s2(i))
+            .map(|i| self.axis_command_accel_mm_s2(i))
             .fold(f64::INFINITY, f64::min)
     }
 

@@ -204,7 +204,11 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let uncrossed_mm = uncrossed_mm(known, controller);
         let turning_mm_s2: [f64; N] = std::array::from_fn(|i| machine.turning_accel_mm_s2(i));
         let lead_mm_s2 = std::array::from_fn(|i| {
-            LEAD_SHARE * machine.correction_accel_mm_s2(i).min(turning_mm_s2[i])
+            // What the owner allows beyond the limit is not shared.
+            let allowed_mm_s2 = machine.axis(i).correction_accel_mm_s2;
+            allowed_mm_s2.map_or(LEAD_SHARE * turning_mm_s2[i], |mm_s2| {
+                mm_s2.min(turning_mm_s2[i])
+            })
         });
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
@@ -212,7 +216,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             engaged_mm_s2: machine.owners_accel_mm_s2(),
             command_mm_s2: std::array::from_fn(|i| {
                 if within_drives {
-                    machine.accel_limit_mm_s2(i)
+                    machine.axis_command_accel_mm_s2(i)
                 } else {
                     f64::INFINITY
                 }

@@ -52,8 +52,8 @@
 mod control_weight;
 mod riccati;
 mod linear;
-mod command_weight;
 mod command_noise;
+mod command_weight;
 mod screw;
 mod approach;
 mod feasible;

@@ -124,8 +124,11 @@ impl Machine {
                 .min(PLANNED_SHARE * self.accel_limit_mm_s2(i));
         }
         let path = &mut constraints.path;
+        let least_mm_s2 = (0..self.axes.len())
+            .map(|i| self.accel_limit_mm_s2(i))
+            .fold(f64::INFINITY, f64::min);
         let curve_mm_s2 = libm::hypot(path.tangential_accel_mm_s2, path.normal_accel_mm_s2);
-        let share = (PLANNED_SHARE * self.command_accel_mm_s2() / curve_mm_s2).min(1.0);
+        let share = (PLANNED_SHARE * least_mm_s2 / curve_mm_s2).min(1.0);
         path.tangential_accel_mm_s2 *= share;
         path.normal_accel_mm_s2 *= share;
         constraints

@@ -7,7 +7,7 @@
 //! mean (x - x_r)^2 + p (v - v_r)^2 + q (K0 Ts)^2 (o - 2 o1 + o2)^2          cost of a servo period
 //! ```
 //!
-//! o is the deviation of the command from the ideal one, with which the position loop requests v_r
+//! o is the deviation of the command that was sent from the ideal one, with which the position loop requests v_r
 //! for an axis on the reference; o1 and o2 are its values of the last two periods, and states. Here
 //! the position loop sees x as it is when the command acts. A delay makes no difference to v: the
 //! command is solved for it.

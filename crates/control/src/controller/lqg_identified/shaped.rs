@@ -272,7 +272,7 @@ impl<const N: usize> Shaped<N> {
         self.open_mm[level.min(LEVELS - 1)][(point % OPEN as u64) as usize]
     }
 
-    /// Returns the smoothed point of the grid; where there is none, the reference.
+    /// Returns the smoothed point of the grid, or the reference where it is not smoothed.
     fn point_mm(&self, window: &Window<'_, N>, point: u64) -> [f64; N] {
         let is_kept = self.first.is_some_and(|first| point >= first)
             && point < self.next
