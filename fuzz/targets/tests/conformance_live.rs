@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 use feedwright::{CONTROLLERS, Choices, Make, Setup, TWO_DIMENSIONAL};
 use feedwright_control::{
     AnyController, Bounds, Command, Controller, ControllerRow, IdentifiedAxes, IdentifierKind,
-    Knot, KnotSource, Knows, Measured, MemberName, Part, Schedule, SelfReport, Tick, Window,
+    Knot, KnotSource, Knows, Measured, MemberName, OffsetBounds, Part, Schedule, SelfReport, Tick,
+    Window,
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes};
 use feedwright_servo::machine::{live_controller, model_of};
@@ -134,7 +135,7 @@ fn corrections(
     let mut setup = Setup::new(machine, &choices);
     let bounds = Bounds::new(1.0, machine.limits.rapid_mm_s, 400.0);
     let block = model_of::<2>(&model.block(None)).unwrap();
-    let mut live = live_controller(member, &block.model, true);
+    let mut live = live_controller(member, &block.model, true, setup.offset_bounds());
     assert_eq!(live.name(), row.name);
     live.hold_to(setup.offset_bounds());
     let entry = CONTROLLERS.find(row.name).unwrap();
@@ -179,7 +180,7 @@ fn a_live_controller_commands_what_the_controller_of_run_commands() {
         if row.knows == Knows::ExactModel {
             // A model file is not exact.
             let block = model_of::<2>(&model.block(None)).unwrap();
-            let live = live_controller(*member, &block.model, true);
+            let live = live_controller(*member, &block.model, true, OffsetBounds::NONE);
             assert_eq!(live.name(), "uncorrected");
             continue;
         }

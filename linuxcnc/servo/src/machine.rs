@@ -58,11 +58,12 @@ pub fn live_controller<const N: usize>(
     member: MemberName,
     model: &TrainedModel<N>,
     is_known: bool,
+    bounds: OffsetBounds,
 ) -> AnyController<N> {
     let data = ControllerData {
         model: Some(model),
         inverse: None,
-        bounds: OffsetBounds::NONE,
+        bounds,
         tries: true,
         is_known,
     };

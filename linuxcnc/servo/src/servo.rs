@@ -207,7 +207,7 @@ impl<const N: usize> Servo<N> {
         let controller = match &model {
             Ok(model) => {
                 let member = member_of(model.trained.kind(), LinkLimits::DEFAULT.speed_alone);
-                live_controller(member, model, false)
+                live_controller(member, model, false, OffsetBounds::NONE)
             }
             Err(_) => AnyController::Uncorrected(Uncorrected),
         };
@@ -466,7 +466,7 @@ impl<const N: usize> Servo<N> {
         if let Ok(model) = &self.model {
             let member = member_of(model.trained.kind(), self.limits.speed_alone);
             if member != self.controller.member() {
-                self.controller = live_controller(member, model, false);
+                self.controller = live_controller(member, model, false, OffsetBounds::NONE);
             }
         }
         let mut schedule = self.controller.schedule();

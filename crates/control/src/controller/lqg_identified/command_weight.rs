@@ -41,6 +41,9 @@ const LEFTMOST_POLE: f64 = -0.25;
 const INERTIA_STEP: f64 = 0.02;
 const INERTIA_STEPS: u32 = 35;
 
+/// Difference up to which commands are equal, rad: rounding.
+const SAME_RAD: f64 = 1e-9;
+
 /// Coefficients of the position loop for commands: K0, K1, K2, kp and kd.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CommandModel {
@@ -130,12 +133,17 @@ impl CommandHistory {
         self.decided_rad = None;
     }
 
-    /// Takes in a sent command, which a bound may have changed. Without a decision it counts as
-    /// ideal.
-    pub(super) fn sent(&mut self, command_rad: f64) {
+    /// Takes in a sent command. One that was not decided counts as ideal, unless `counts`: then as
+    /// it was sent. The regulator must not make up smoothly for a part that is left out on purpose,
+    /// but it has to know what the limits of its axis have cut off.
+    pub(super) fn sent(&mut self, command_rad: f64, counts: bool) {
         let off_rad = match self.decided_rad.take() {
-            Some([decided_rad, off_rad]) => off_rad + (command_rad - decided_rad),
-            None => 0.0,
+            Some([decided_rad, off_rad])
+                if counts || (command_rad - decided_rad).abs() <= SAME_RAD =>
+            {
+                off_rad + (command_rad - decided_rad)
+            }
+            _ => 0.0,
         };
         let [last_rad, _] = self.off_rad;
         self.off_rad = [off_rad, last_rad];
@@ -401,26 +409,27 @@ mod tests {
     fn a_command_that_a_bound_changed_counts_as_it_was_sent() {
         let known = with_feedforward();
         let (axis_model, mut history) = (CommandModel::new(&known), CommandHistory::IDEAL);
-        let mut send = |sent_rad: f64| {
+        let mut send = |sent_rad: f64, counts: bool| {
             history.decide(
                 &axis_model,
                 &[0.0; REGULATED],
                 -axis_model.of_commands[0] * 0.01,
                 3.0,
             );
-            history.sent(sent_rad);
+            history.sent(sent_rad, counts);
             history.off_rad()
         };
-        let [last_rad, before_rad] = send(3.0);
+        let [last_rad, before_rad] = send(3.0, false);
         assert!(
             (last_rad - 0.01).abs() < 1e-12 && before_rad == 0.0,
             "{last_rad} {before_rad}"
         );
-        let [changed_rad, before_rad] = send(2.999);
+        let [changed_rad, before_rad] = send(2.999, true);
         assert!(
             (changed_rad - 0.009).abs() < 1e-12 && before_rad == last_rad,
             "{changed_rad} {before_rad}"
         );
+        assert_eq!(send(2.999, false), [0.0, changed_rad]);
     }
 
     #[test]

@@ -41,8 +41,6 @@ const TIME_RATIO: f64 = core::f64::consts::SQRT_2;
 const TIMES: u32 = 10;
 /// RMS acceleration of the command at constant speed, part of the smallest limit of the axes.
 const NOISE_SHARE: f64 = 0.1;
-/// The same as a torque, part of the torque limit, where no acceleration is stated.
-const NOISE_TORQUE: f64 = 0.04;
 /// Shortest time constant of the regulator of a compliant screw, in radians of its resonance, where
 /// the model may be wrong: the model of the regulator has no backlash. On `soft`, 2 leaves 0.6 of
 /// the error that 0 leaves on star, circle and square, and 0.1 on pocket.
@@ -87,9 +85,8 @@ impl LqgSettings {
         noise_rad: impl Fn(f64) -> f64,
     ) -> f64 {
         let (axis, servo_s) = (&axis_model.parameters, axis_model.periods.servo_s);
-        let by_torque_rad_s2 = NOISE_TORQUE * axis.torque_limit_nm / axis.inertia_kg_m2;
-        let by_limit_rad_s2 = NOISE_SHARE * self.bounds.acceleration_mm_s2 * axis.rad_per_mm;
-        let most_rad = servo_s * servo_s * by_torque_rad_s2.min(by_limit_rad_s2);
+        let most_rad_s2 = NOISE_SHARE * self.bounds.acceleration_mm_s2 * axis.rad_per_mm;
+        let most_rad = servo_s * servo_s * most_rad_s2;
         let ratio = TIME_RATIO * TIME_RATIO * TIME_RATIO * TIME_RATIO;
         let mut weight = self.command_weight;
         for _ in 1..TIMES {

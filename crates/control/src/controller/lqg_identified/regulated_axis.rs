@@ -389,7 +389,8 @@ impl AxisLqg {
         };
         let command_rad = (path_mm + offset_mm) * rad_per_mm;
         let from_rad = running.real.tracked.measured_rad;
-        running.commands.sent(command_rad);
+        let is_limited = self.bounds.acceleration_mm_s2 < f64::INFINITY;
+        running.commands.sent(command_rad, is_limited);
         if let (Some(learner), Some(learning)) = (&self.learner, &mut running.learning) {
             learner.along(learning, path_mm * rad_per_mm);
         }
@@ -502,7 +503,8 @@ impl AxisLqg {
             ..
         } = running;
         let before_mm = path_mm.replace(here_mm).unwrap_or(here_mm);
-        commands.sent((before_mm + offset_mm) * rad_per_mm);
+        let is_limited = self.bounds.acceleration_mm_s2 < f64::INFINITY;
+        commands.sent((before_mm + offset_mm) * rad_per_mm, is_limited);
         real.foresee(&self.model, (before_mm + offset_mm) * rad_per_mm);
         beside.foresee(&self.other, (before_mm + offset_mm) * rad_per_mm);
         open.estimate.acting_nm = real.tracked.estimate.acting_nm;
@@ -669,7 +671,8 @@ impl AxisLqg {
 
     /// Forgets the command that was decided last: another one is sent, and counts as ideal.
     pub(super) fn forget_decision(&mut self) {
-        if let Some(running) = &mut self.state {
+        let is_limited = self.bounds.acceleration_mm_s2 < f64::INFINITY;
+        if let Some(running) = self.state.as_mut().filter(|_| is_limited) {
             running.commands.forget_decision();
         }
     }
