@@ -17,7 +17,7 @@ const PERIODS: [(f64, u32); 5] = [
 ];
 /// RMS against the uncorrected cut's at the most: up to 2 ms, and beyond, where a corner lasts less
 /// than a period.
-const RATIO: f64 = 0.03;
+const RATIO: f64 = 0.1;
 const SLOW_RATIO: f64 = 0.6;
 
 /// RMS and largest contour error, um.
