@@ -45,6 +45,17 @@ const fn half(length: usize) -> usize {
     if length == 1 { 0 } else { 2 * length - 1 }
 }
 
+/// Longest half width of a kernel, s. At a servo period of 10 ms a longer one rounds the corners of a
+/// square off more than the drives do.
+const LONGEST_S: f64 = 0.03;
+
+/// Returns a box length, or the longest one whose kernel is short enough.
+fn within(length: usize, servo_s: f64) -> usize {
+    let is_within = |length: &usize| half(*length) as f64 * servo_s <= LONGEST_S;
+    let lengths = LENGTHS.into_iter().filter(is_within);
+    lengths.fold(1, usize::max).min(length)
+}
+
 /// A kernel: weights from its center on.
 #[derive(Debug, Clone, Copy)]
 struct Kernel {
@@ -152,8 +163,9 @@ pub(super) struct Shaped<const N: usize> {
 impl<const N: usize> Shaped<N> {
     /// Creates the smoothing for axes with these models.
     pub(super) fn new(axis_models: [AxisModel; N]) -> Self {
+        let servo_s = axis_models.first().map_or(0.0, |axis| axis.periods.servo_s);
         Self {
-            kernels: LENGTHS.map(Kernel::new),
+            kernels: LENGTHS.map(|length| Kernel::new(within(length, servo_s))),
             ideal: axis_models.each_ref().map(IdealCommand::new),
             open_mm: [[[0.0; N]; OPEN]; LEVELS],
             leads_mm: [[[0.0; 2]; N]; LEVELS],
