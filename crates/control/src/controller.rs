@@ -51,6 +51,11 @@ impl OffsetBounds {
         fastest_mm_s: f64::INFINITY,
         acceleration_mm_s2: f64::INFINITY,
     };
+
+    /// Returns true if the acceleration of a command is limited.
+    pub(crate) fn limits_acceleration(&self) -> bool {
+        self.acceleration_mm_s2 < f64::INFINITY
+    }
 }
 
 /// Interface of a controller. The conformance tests of the library admit a controller: rest stays

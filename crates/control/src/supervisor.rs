@@ -22,7 +22,7 @@
 //! | `supervisor/trial.rs` | does a correction without a model of the axes help? | commands a smaller share |
 //! | `supervisor/fade.rs` | how does an offset return to the path? | |
 //! | `supervisor/bounds.rs` | is a command permitted? | it is held to the bound |
-//! | `supervisor/dose.rs` | does an offset fit into [`Bounds::command_mm_s2`]? | commands a smaller part of it |
+//! | `supervisor/dose.rs` | does an offset fit into [`Bounds::engaged_mm_s2`]? | commands a smaller part of it |
 //! | `supervisor/engagement.rs` | is the correction engaged? | waits for 0.1 s of good motion, longer after each fault |
 //!
 //! A command that is not a number disengages at once.
@@ -166,6 +166,7 @@ impl<const N: usize> Supervisor<N> {
             moves: window.now().feed_mm_s > 0.0,
             period_s: window.feed_period_s,
         });
+        let planned_mm_s2 = bounds::planned_mm_s2(window);
         let asked = match state {
             _ if report.acts_at_once => {
                 self.dose.learn(report.learned);
@@ -179,7 +180,7 @@ impl<const N: usize> Supervisor<N> {
                         self.bounds.fade_mm_s2,
                     );
                 }
-                self.at_once(window, &wanted, state, is_known)
+                self.at_once(window, &wanted, (state, is_known), planned_mm_s2)
             }
             State::Engaged => wanted,
             State::Shadow => Command::AS_PLANNED,
@@ -190,7 +191,8 @@ impl<const N: usize> Supervisor<N> {
             .hold(window, asked, self.rate, report.acts_at_once);
         self.held = state == State::Engaged && (command != asked || self.dose.is_reduced());
         self.rate = command.rate;
-        self.last_mm_s2 = Bounds::commanded_mm_s2(window, command.offset_mm);
+        let offset_mm_s2 = bounds::offset_mm_s2(window, command.offset_mm);
+        self.last_mm_s2 = add_scaled(planned_mm_s2, 1.0, offset_mm_s2);
         command
     }
 
@@ -201,8 +203,8 @@ impl<const N: usize> Supervisor<N> {
         &mut self,
         window: &Window<'_, N>,
         wanted: &Command<N>,
-        state: State,
-        is_known: bool,
+        (state, is_known): (State, bool),
+        planned_mm_s2: [f64; N],
     ) -> Command<N> {
         let period_s = window.feed_period_s;
         let is_in = state == State::Engaged;
@@ -222,7 +224,9 @@ impl<const N: usize> Supervisor<N> {
                 }
             }
         };
-        let offset_mm = self.bounds.accelerated_mm(window, due_mm, self.last_mm_s2);
+        let offset_mm =
+            self.bounds
+                .accelerated_mm(window, due_mm, [planned_mm_s2, self.last_mm_s2]);
         // What is cut off by the limits of the axes alone is soon made up: the plan leaves room.
         if self.bounds.engaged_mm_s2 < f64::INFINITY {
             self.dose.take_in(sub(due_mm, offset_mm), period_s);

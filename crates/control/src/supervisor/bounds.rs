@@ -5,6 +5,7 @@
 //! | deviation | distance of the command from the path; it has priority over the others | set for the machine |
 //! | speed | speed of the offset | the speed of a rapid motion |
 //! | acceleration | acceleration of the offset, and of the feed against the plan | the speed within [`TAKE_UP_S`] |
+//! | command's acceleration | acceleration of path and offset of each axis, and its change in a servo period | set for the axis |
 //! | rate | rate of plan time | [`SLOWEST`] to [`FASTEST`], or the permitted rise of the feed |
 //!
 //! An offset along the path does not count as a deviation. The path is known as chords between the
@@ -75,17 +76,17 @@ impl<const N: usize> Bounds<N> {
     }
 
     /// Returns the next step toward a due offset with which the command of each axis stays within
-    /// its acceleration, and changes it by no more than the limit from the last one, `last_mm_s2`:
-    /// as fast as it can still be braked there. A step within these bounds is followed to the bit.
-    /// Where the path itself is beyond them, the offset keeps its speed.
+    /// its acceleration, and changes it by no more than the limit from the last one: as fast as it
+    /// can still be braked there. The accelerations are those of the path and of the last command. A
+    /// step within these bounds is followed to the bit. If the path itself exceeds them, the offset
+    /// keeps its speed.
     pub(super) fn accelerated_mm(
         &self,
         window: &Window<'_, N>,
         due_mm: [f64; N],
-        last_mm_s2: [f64; N],
+        [planned_mm_s2, last_mm_s2]: [[f64; N]; 2],
     ) -> [f64; N] {
         let period_s = window.feed_period_s;
-        let planned_mm_s2 = planned_mm_s2(window);
         core::array::from_fn(|axis| {
             let (due_mm, limit_mm_s2) = (due_mm[axis], self.command_mm_s2[axis]);
             let (from_mm, from_mm_s) = (window.offset_mm[axis], window.offset_mm_s[axis]);
@@ -107,14 +108,6 @@ impl<const N: usize> Bounds<N> {
                 due_mm
             }
         })
-    }
-
-    /// Returns the acceleration of a command with this offset, mm/s2.
-    pub(super) fn commanded_mm_s2(window: &Window<'_, N>, offset_mm: [f64; N]) -> [f64; N] {
-        let period_s = window.feed_period_s;
-        let speed_mm_s = scale(1.0 / period_s, sub(offset_mm, window.offset_mm));
-        let change_mm_s = sub(speed_mm_s, window.offset_mm_s);
-        add_scaled(planned_mm_s2(window), 1.0 / period_s, change_mm_s)
     }
 
     /// Returns true if the acceleration of a command is limited.
@@ -222,8 +215,18 @@ impl<const N: usize> Bounds<N> {
     }
 }
 
+/// Returns the acceleration of an offset that is this one at the end of the feed period, mm/s2.
+pub(super) fn offset_mm_s2<const N: usize>(
+    window: &Window<'_, N>,
+    offset_mm: [f64; N],
+) -> [f64; N] {
+    let per_s = 1.0 / window.feed_period_s;
+    let speed_mm_s = scale(per_s, sub(offset_mm, window.offset_mm));
+    scale(per_s, sub(speed_mm_s, window.offset_mm_s))
+}
+
 /// Returns the acceleration of the path in the last two servo periods, mm/s2.
-fn planned_mm_s2<const N: usize>(window: &Window<'_, N>) -> [f64; N] {
+pub(super) fn planned_mm_s2<const N: usize>(window: &Window<'_, N>) -> [f64; N] {
     let servo_s = window.servo_s();
     let [here_mm, last_mm, before_mm] =
         [0.0, -servo_s, -2.0 * servo_s].map(|after_s| window.at(after_s).position_mm);

@@ -7,9 +7,9 @@
 //! a^2 = d P d' / Ts^4,   d x = o - 2 o1 + o2
 //! ```
 //!
-//! With the model of the filter, innovations are white, and their variance is S = R / (1 - k1), where
-//! k1 is the gain of the angle. f forgets over [`REMEMBERED`] periods: an estimated load
-//! is a random walk, and has no variance of its own.
+//! The innovations of a filter with the right model are white, with the variance S = R / (1 - k1); k1
+//! is the gain of the angle. f forgets over [`REMEMBERED`] periods: an estimated load is a random
+//! walk, and has no variance of its own.
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 8.1, for the
 //! separation of filter and regulator; Åström and Wittenmark (1997), Computer-Controlled Systems,

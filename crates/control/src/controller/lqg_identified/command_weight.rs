@@ -72,6 +72,18 @@ impl CommandModel {
         }
     }
 
+    /// Returns K2, 1/s.
+    pub(super) fn by_change_1_s(&self) -> f64 {
+        let [_, _, by_change] = self.of_commands;
+        by_change
+    }
+
+    /// Returns o by K0 o - K1 o1 + K2 o2.
+    pub(super) fn solved(&self, sum: f64, [o1, o2]: [f64; 2]) -> f64 {
+        let [k0, k1, k2] = self.of_commands;
+        (sum + k1 * o1 - k2 * o2) / k0
+    }
+
     /// Returns the offset for a unit of reference speed, s.
     pub(super) fn by_speed_s(&self) -> f64 {
         let [k0, ..] = self.of_commands;

@@ -101,7 +101,7 @@ impl LqgSettings {
 
     /// Returns the variance of the measurement that the filter assumes, times the stated one.
     pub(super) fn assumed_noise(&self) -> f64 {
-        if self.learns && self.bounds.acceleration_mm_s2 < f64::INFINITY {
+        if self.learns && self.bounds.limits_acceleration() {
             ASSUMED_NOISE
         } else {
             1.0

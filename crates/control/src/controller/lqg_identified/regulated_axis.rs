@@ -389,8 +389,9 @@ impl AxisLqg {
         };
         let command_rad = (path_mm + offset_mm) * rad_per_mm;
         let from_rad = running.real.tracked.measured_rad;
-        let is_limited = self.bounds.acceleration_mm_s2 < f64::INFINITY;
-        running.commands.sent(command_rad, is_limited);
+        running
+            .commands
+            .sent(command_rad, self.bounds.limits_acceleration());
         if let (Some(learner), Some(learning)) = (&self.learner, &mut running.learning) {
             learner.along(learning, path_mm * rad_per_mm);
         }
@@ -503,8 +504,10 @@ impl AxisLqg {
             ..
         } = running;
         let before_mm = path_mm.replace(here_mm).unwrap_or(here_mm);
-        let is_limited = self.bounds.acceleration_mm_s2 < f64::INFINITY;
-        commands.sent((before_mm + offset_mm) * rad_per_mm, is_limited);
+        commands.sent(
+            (before_mm + offset_mm) * rad_per_mm,
+            self.bounds.limits_acceleration(),
+        );
         real.foresee(&self.model, (before_mm + offset_mm) * rad_per_mm);
         beside.foresee(&self.other, (before_mm + offset_mm) * rad_per_mm);
         open.estimate.acting_nm = real.tracked.estimate.acting_nm;
@@ -671,8 +674,9 @@ impl AxisLqg {
 
     /// Forgets the command that was decided last: another one is sent, and counts as ideal.
     pub(super) fn forget_decision(&mut self) {
-        let is_limited = self.bounds.acceleration_mm_s2 < f64::INFINITY;
-        if let Some(running) = self.state.as_mut().filter(|_| is_limited) {
+        if let Some(running) = &mut self.state
+            && self.bounds.limits_acceleration()
+        {
             running.commands.forget_decision();
         }
     }

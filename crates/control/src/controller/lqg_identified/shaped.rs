@@ -12,8 +12,8 @@
 //! used, as far around the jump as its kernel reaches. Where nothing jumps the reference is not
 //! changed.
 //!
-//! Where the reference is not known far enough ahead for that choice, the longest kernel that fits
-//! is used throughout.
+//! If too little of the reference ahead is known for that choice, the longest kernel that fits is
+//! used throughout.
 //!
 //! Source: Kaiser and Hamming (1977), "Sharpening the response of a symmetric nonrecursive filter by
 //! multiple use of the same filter", for the flat kernel; the choice of its length is our own.
@@ -21,6 +21,8 @@
 use crate::axis::AxisModel;
 use crate::vector::{add_scaled, scale, sub};
 use crate::window::Window;
+
+use super::command_weight::CommandModel;
 
 /// Lengths L of the boxes, servo periods.
 const LENGTHS: [usize; 5] = [1, 3, 5, 9, 15];
@@ -102,8 +104,7 @@ impl Kernel {
 /// Coefficients of an axis in its ideal command.
 #[derive(Debug, Clone, Copy)]
 struct IdealCommand {
-    /// Factors on o, o1 and o2.
-    of_leads: [f64; 3],
+    command_model: CommandModel,
     /// Factors on s(k+1), s, s1 and s2.
     of_points: [f64; 4],
     servo_s: f64,
@@ -112,17 +113,13 @@ struct IdealCommand {
 impl IdealCommand {
     fn new(axis_model: &AxisModel) -> Self {
         let (parameters, servo_s) = (&axis_model.parameters, axis_model.periods.servo_s);
-        let torque_s = parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad;
-        let by_change = parameters.acceleration_feedforward * torque_s / (servo_s * servo_s);
-        let by_speed = (parameters.kd + parameters.velocity_feedforward) / servo_s;
+        let command_model = CommandModel::new(axis_model);
+        let by_change = command_model.by_change_1_s();
         let forward = parameters.velocity_feedforward / servo_s;
+        let torque_s = parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad;
         let (speed, torque) = (1.0 / servo_s, torque_s / (servo_s * servo_s));
         Self {
-            of_leads: [
-                parameters.kp_1_s + by_speed + by_change,
-                by_speed + 2.0 * by_change,
-                -by_change,
-            ],
+            command_model,
             of_points: [
                 speed + torque,
                 -speed - 2.0 * torque - forward - by_change,
@@ -134,10 +131,9 @@ impl IdealCommand {
     }
 
     /// Returns o of the points after the leads o1 and o2.
-    fn lead(&self, points: [f64; 4], [last, before]: [f64; 2]) -> f64 {
-        let [k0, k1, k2] = self.of_leads;
+    fn lead(&self, points: [f64; 4], last: [f64; 2]) -> f64 {
         let needed: f64 = self.of_points.iter().zip(points).map(|(k, s)| k * s).sum();
-        (needed + k1 * last + k2 * before) / k0
+        self.command_model.solved(needed, last)
     }
 }
 
