@@ -19,6 +19,7 @@ pub mod compare;
 mod never_worse;
 pub mod mismatch;
 mod independent;
+pub mod margins;
 pub mod command;
 
 pub use compare::held_out_work::HeldOutSeeds;

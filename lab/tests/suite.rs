@@ -48,6 +48,7 @@ mod oracle_fastest;
 mod oracle_feed;
 mod oracle_independent_plant;
 mod oracle_lqg;
+mod oracle_margins;
 mod oracle_resimulation;
 mod oracle_riccati;
 mod property_feed;

@@ -39,6 +39,7 @@
 //! | `lqg_identified/feasible.rs` | check of the torque for the reference ahead |
 //! | `lqg_identified/gain_table.rs` | gains of the filter by the noise of the measurement |
 //! | `lqg_identified/estimate.rs` | the filter |
+//! | `lqg_identified/loop_margins.rs` | margins of the loop |
 //! | `lqg_identified/learning.rs` | model errors, learned while the axis moves |
 //! | `lqg_identified/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
@@ -59,6 +60,7 @@ mod approach;
 mod feasible;
 mod gain_table;
 mod estimate;
+mod loop_margins;
 mod learning;
 mod regulated_axis;
 mod shaped;

@@ -90,6 +90,17 @@ impl CommandModel {
         1.0 / k0
     }
 
+    /// Returns the reference speed that a command gives beside those of the last two periods.
+    pub(super) fn by_commands(&self, command: f64, [last, before]: [f64; 2]) -> f64 {
+        let [k0, k1, k2] = self.of_commands;
+        k0 * command - k1 * last + k2 * before
+    }
+
+    /// Returns what a command has to add for a measured angle and the one before.
+    pub(super) fn by_angle(&self, angle_rad: f64, before_rad: f64) -> f64 {
+        self.kp_1_s * angle_rad + self.kd * (angle_rad - before_rad) / self.servo_s
+    }
+
     /// Returns v - v_r by each state, without K0 o.
     fn row(&self) -> [f64; REGULATED] {
         let Self {

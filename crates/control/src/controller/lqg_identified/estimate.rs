@@ -20,9 +20,8 @@ use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 use crate::supervisor::outliers::{self, Outliers};
 use crate::supervisor::whiteness::{LEVELS, Whiteness};
 
-use super::control_weight::LqgSettings;
 use super::gain_table::GainTable;
-use super::linear::{LinearAxis, STATES, measured_rad2};
+use super::linear::{LinearAxis, LinearCourse, STATES, measured_rad2};
 use super::riccati::{StateMatrix, applied, filter};
 
 /// Number of references that are kept, servo periods: 20 ms each way at 1 ms, the longest of a
@@ -176,20 +175,21 @@ fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -
 }
 
 impl FilterModel {
-    /// Creates the model of an axis. If the controller learns, it also has gains for other statistics.
-    pub(super) fn new(axis_model: AxisModel, settings: &LqgSettings) -> Self {
+    /// Creates the model of an axis, whose filter assumes `noise` times the stated variance of the
+    /// measurement. If the controller learns, it also has gains for other statistics.
+    pub(super) fn new(axis_model: AxisModel, noise: f64, learns: bool) -> Self {
         let AxisModel {
             parameters,
             periods,
             ..
         } = &axis_model;
         let linear = LinearAxis::new(&axis_model);
-        let (states, _, noise) = linear.sampled();
+        let (states, _, of_loads) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
-        let gains = |variance_rad2: f64| filter(&states, &noise, &measured, variance_rad2);
-        let filtered_rad2 = settings.assumed_noise() * measured_rad2(parameters);
-        let gains = if settings.learns {
+        let gains = |variance_rad2: f64| filter(&states, &of_loads, &measured, variance_rad2);
+        let filtered_rad2 = noise * measured_rad2(parameters);
+        let gains = if learns {
             GainTable::new(filtered_rad2, gains)
         } else {
             GainTable::constant(gains(filtered_rad2))
@@ -249,6 +249,12 @@ impl FilterModel {
             },
             [sent; KEPT_PERIODS],
         )
+    }
+
+    /// Returns the course of the linear axis between two measurements.
+    pub(super) fn linear_course(&self) -> LinearCourse {
+        let [measured_late, drive_late] = self.late;
+        LinearCourse::new(&self.linear, &self.axis_model, measured_late + drive_late)
     }
 
     /// Returns the cogging torque of the motor at an angle, N m.

@@ -240,6 +240,100 @@ impl LinearAxis {
     }
 }
 
+/// The linear axis between two measurements, with a drive that is late.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LinearCourse {
+    /// Transition over a servo period, and over the time from a measurement until a reference that
+    /// follows from it acts.
+    period: StateMatrix<STATES>,
+    until_acting: StateMatrix<STATES>,
+    /// Servo periods of that time, and the change of the states by the reference that acts in its
+    /// last part, in the rest of that servo period, and in a whole one.
+    late: usize,
+    part: [f64; STATES],
+    rest: [f64; STATES],
+    whole: [f64; STATES],
+    /// Change of the reference speed by the integral of the speed loop, for a N m of it.
+    by_integral: f64,
+}
+
+impl LinearCourse {
+    /// Creates the course of an axis whose references act `late` mechanics periods after the
+    /// measurement from which they follow.
+    pub(super) fn new(axis: &LinearAxis, axis_model: &AxisModel, late: u32) -> Self {
+        let (parameters, periods) = (&axis_model.parameters, axis_model.periods);
+        let substeps = axis.substeps.max(1);
+        let over = |periods: u32| {
+            let (mut states, mut input): (StateMatrix<STATES>, _) =
+                (core::array::from_fn(unit), [0.0; STATES]);
+            for _ in 0..periods {
+                states = product(&axis.substep, &states);
+                let carried = applied(&axis.substep, &input);
+                input = core::array::from_fn(|i| carried[i] + axis.substep_input[i]);
+            }
+            (states, input)
+        };
+        let (period, whole) = over(substeps);
+        let (of_part, part) = over(late % substeps);
+        let (_, rest) = over(substeps - late % substeps);
+        let until_acting =
+            (0..late / substeps).fold(of_part, |states, _| product(&period, &states));
+        let within = if parameters.speed_integral_s > 0.0 {
+            0.5 * (periods.servo_s + periods.mechanics_s) / parameters.speed_integral_s
+        } else {
+            0.0
+        };
+        Self {
+            period,
+            until_acting,
+            late: (late / substeps) as usize,
+            part,
+            rest,
+            whole,
+            by_integral: -1.0 / (parameters.kv_nm_s_per_rad * (1.0 + within)),
+        }
+    }
+
+    /// Returns the states a servo period after a measurement. `sent` holds the references, the
+    /// newest first: the first follows from that measurement.
+    pub(super) fn period_later(&self, states: &[f64; STATES], sent: &[f64]) -> [f64; STATES] {
+        let age = |age: usize| sent.get(age).copied().unwrap_or(0.0);
+        let (newer, older) = (age(self.late), age(self.late + 1));
+        // The older one acts first, for the part.
+        let carried = applied(&self.period, states);
+        let by_older: [f64; STATES] = core::array::from_fn(|i| self.whole[i] - self.rest[i]);
+        core::array::from_fn(|i| carried[i] + self.rest[i] * newer + by_older[i] * older)
+    }
+
+    /// Returns the states at the time at which the next reference acts. `sent` holds those before it,
+    /// the newest first.
+    pub(super) fn ahead(&self, states: &[f64; STATES], sent: &[f64]) -> [f64; STATES] {
+        // First the part of the oldest, then whole periods.
+        let mut ahead = applied(&self.until_acting, states);
+        let mut add = |input: &[f64; STATES], age: usize, periods: usize| {
+            let mut carried = *input;
+            for _ in 0..periods {
+                carried = applied(&self.period, &carried);
+            }
+            let reference = sent.get(age).copied().unwrap_or(0.0);
+            ahead
+                .iter_mut()
+                .zip(carried)
+                .for_each(|(state, input)| *state += input * reference);
+        };
+        add(&self.part, self.late, self.late);
+        for age in 0..self.late {
+            add(&self.whole, age, age);
+        }
+        ahead
+    }
+
+    /// Returns the ideal reference speed of an axis with these states: it makes up for the integral.
+    pub(super) fn reference(&self, [_, _, integral_nm, ..]: &[f64; STATES]) -> f64 {
+        self.by_integral * integral_nm
+    }
+}
+
 /// Returns the variance of the measurement, rad^2.
 pub(super) fn measured_rad2(axis: &Parameters) -> f64 {
     let step_rad2 = axis.encoder_step_rad * axis.encoder_step_rad / 12.0;

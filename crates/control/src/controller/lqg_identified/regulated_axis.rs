@@ -17,6 +17,7 @@ use super::control_weight::LqgSettings;
 use super::estimate::{Estimate, FilterModel, Innovation, KEPT_PERIODS, Learnt, ModelTrial, Sent};
 use super::learning::{Learner, Learning};
 use super::linear;
+use super::loop_margins::LoopMargins;
 use super::screw::{ScrewTwist, TwistCourse};
 use crate::controller::OffsetBounds;
 
@@ -30,6 +31,10 @@ pub struct LqgGains {
     pub filter: [f64; linear::STATES],
     /// Reduction of the reference speed, rad/s, for a unit of each state.
     pub regulator: [f64; linear::STATES],
+    /// Smallest factor on the gain of the loop, above 1, at which it becomes unstable.
+    pub gain_margin: f64,
+    /// Smallest lag in the loop at which it becomes unstable, rad.
+    pub phase_margin_rad: f64,
 }
 
 /// An axis, its gains, and its state.
@@ -39,6 +44,7 @@ pub(super) struct AxisLqg {
     inverse: AxisInverse,
     twist: Option<ScrewTwist>,
     regulator: WeightedGains,
+    margins: LoopMargins,
     command_model: CommandModel,
     bounds: OffsetBounds,
     /// Learner of the model errors; `None` if the model is exact.
@@ -218,19 +224,21 @@ impl ModelRun {
 impl AxisLqg {
     /// Creates an axis from its model.
     pub(super) fn new(axis_model: AxisModel, settings: LqgSettings) -> Self {
-        let model = FilterModel::new(axis_model, &settings);
         let regulated = command_weight::regulated_axis(&axis_model);
         let command_model = CommandModel::new(&axis_model);
         let control_weight_s2 = settings.lowest_control_weight_s2(&axis_model.parameters);
         let gains = command_weight::gains(&regulated, &command_model);
-        let command_weight = if settings.command_weight > 0.0 {
-            settings.quiet_command_weight(&axis_model, |weight| {
+        let design = |noise: f64| {
+            let model = FilterModel::new(axis_model, noise, settings.learns);
+            let weight = settings.quiet_command_weight(&axis_model, |weight| {
                 let gains = gains([control_weight_s2, weight]);
                 command_weight::noise_rad(&regulated, &command_model, &gains, model.innovations())
-            })
-        } else {
-            0.0
+            });
+            let near = gains([control_weight_s2, weight]);
+            let margins = LoopMargins::of(&model, &command_model, &near);
+            ((model, weight, margins), margins.share())
         };
+        let (model, command_weight, margins) = settings.sound_design(design);
         let regulator = WeightedGains::new([control_weight_s2, command_weight], gains);
         let least_inertia = || command_weight::least_inertia(&axis_model, &regulator.near());
         Self {
@@ -244,6 +252,7 @@ impl AxisLqg {
                 .learns
                 .then(|| Learner::new(axis_model, &model.linear, least_inertia())),
             regulator,
+            margins,
             command_model,
             other: model.clone(),
             may_learn: true,
@@ -271,6 +280,8 @@ impl AxisLqg {
         LqgGains {
             filter: self.model.gains_as_given(),
             regulator: core::array::from_fn(|state| near[state]),
+            gain_margin: self.margins.gain,
+            phase_margin_rad: self.margins.phase_rad,
         }
     }
 
