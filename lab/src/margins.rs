@@ -78,14 +78,14 @@ pub fn margins(machine: &Machine, axis: usize, model: AxisModel, settings: LqgSe
         .map(|n| PI * f64::from(n) / f64::from(FREQUENCIES))
         .filter(|rad| *rad > lowest_rad)
         .map(|rad| {
-            let turn = Complex::new(rad.cos(), -rad.sin());
+            let turn = Complex::new(libm::cos(rad), -libm::sin(rad));
             let after = (Complex::new(1.0, 0.0) - turn).inv() * rest;
             // Horner's rule, from the end on.
             let commands = changed.iter().rev();
             commands.fold(after, |sum, command| sum * turn + command)
         })
         .collect();
-    let size = |z: &Complex<f64>| z.re.hypot(z.im);
+    let size = |z: &Complex<f64>| libm::hypot(z.re, z.im);
     let open: Vec<Complex<f64>> = sensitivities.iter().map(|s| s.inv() - 1.0).collect();
     let mut margins = Margins {
         gain: f64::INFINITY,
@@ -103,7 +103,7 @@ pub fn margins(machine: &Machine, axis: usize, model: AxisModel, settings: LqgSe
             }
         }
         if (size(&from) - 1.0) * (size(&to) - 1.0) < 0.0 {
-            margins.phase_rad = margins.phase_rad.min(from.im.atan2(-from.re).abs());
+            margins.phase_rad = margins.phase_rad.min(libm::atan2(from.im, -from.re).abs());
         }
     }
     margins
