@@ -355,7 +355,7 @@ impl Machine {
 
     /// Acceleration of the i-th axis that its command may have, mm/s2: the one that is stated, or
     /// the largest that its plan takes.
-    pub fn accel_limit_mm_s2(&self, i: usize) -> f64 {
+    pub(crate) fn accel_limit_mm_s2(&self, i: usize) -> f64 {
         let limits = &self.limits;
         let corner_mm_s2 = limits.corner_jump_mm_s / self.period.servo_s;
         let curve_mm_s2 = libm::hypot(limits.tangential_accel_mm_s2, limits.normal_accel_mm_s2);
@@ -374,7 +374,7 @@ impl Machine {
 
     /// Acceleration that the command of the i-th axis may have with a correction in the loop, mm/s2:
     /// its limit, and what the owner allows the correction beyond it.
-    pub(crate) fn axis_command_accel_mm_s2(&self, i: usize) -> f64 {
+    pub fn axis_command_accel_mm_s2(&self, i: usize) -> f64 {
         self.accel_limit_mm_s2(i) + self.axis(i).correction_accel_mm_s2.unwrap_or(0.0)
     }
 

@@ -82,7 +82,7 @@ impl DriveLimits {
     /// Returns the limits of a machine.
     pub(crate) fn of(machine: &Machine) -> Self {
         Self {
-            accel_mm_s2: std::array::from_fn(|i| machine.accel_limit_mm_s2(i)),
+            accel_mm_s2: std::array::from_fn(|i| machine.axis_command_accel_mm_s2(i)),
             torque_nm: std::array::from_fn(|i| machine.axis(i).torque_limit_nm),
         }
     }
