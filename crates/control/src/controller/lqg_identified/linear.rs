@@ -243,13 +243,13 @@ impl LinearAxis {
 /// The linear axis between two measurements, with a drive that is late.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LinearCourse {
-    /// Transition over a servo period, and over the time from a measurement until a reference that
-    /// follows from it acts.
-    period: StateMatrix<STATES>,
-    until_acting: StateMatrix<STATES>,
-    /// Servo periods of that time, and the change of the states by the reference that acts in its
-    /// last part, in the rest of that servo period, and in a whole one.
+    /// Whole servo periods from a measurement until a reference that follows from it acts.
     late: usize,
+    /// Transition over a servo period, and over the part of one that this time has beyond them.
+    period: StateMatrix<STATES>,
+    over_part: StateMatrix<STATES>,
+    /// Change of the states by a reference in that part, in the rest of the servo period, and in a
+    /// whole one.
     part: [f64; STATES],
     rest: [f64; STATES],
     whole: [f64; STATES],
@@ -263,10 +263,10 @@ impl LinearCourse {
     pub(super) fn new(axis: &LinearAxis, axis_model: &AxisModel, late: u32) -> Self {
         let (parameters, periods) = (&axis_model.parameters, axis_model.periods);
         let substeps = axis.substeps.max(1);
-        let over = |periods: u32| {
+        let over = |number: u32| {
             let (mut states, mut input): (StateMatrix<STATES>, _) =
                 (core::array::from_fn(unit), [0.0; STATES]);
-            for _ in 0..periods {
+            for _ in 0..number {
                 states = product(&axis.substep, &states);
                 let carried = applied(&axis.substep, &input);
                 input = core::array::from_fn(|i| carried[i] + axis.substep_input[i]);
@@ -274,19 +274,17 @@ impl LinearCourse {
             (states, input)
         };
         let (period, whole) = over(substeps);
-        let (of_part, part) = over(late % substeps);
+        let (over_part, part) = over(late % substeps);
         let (_, rest) = over(substeps - late % substeps);
-        let until_acting =
-            (0..late / substeps).fold(of_part, |states, _| product(&period, &states));
         let within = if parameters.speed_integral_s > 0.0 {
             0.5 * (periods.servo_s + periods.mechanics_s) / parameters.speed_integral_s
         } else {
             0.0
         };
         Self {
-            period,
-            until_acting,
             late: (late / substeps) as usize,
+            period,
+            over_part,
             part,
             rest,
             whole,
@@ -308,24 +306,15 @@ impl LinearCourse {
     /// Returns the states at the time at which the next reference acts. `sent` holds those before it,
     /// the newest first.
     pub(super) fn ahead(&self, states: &[f64; STATES], sent: &[f64]) -> [f64; STATES] {
-        // First the part of the oldest, then whole periods.
-        let mut ahead = applied(&self.until_acting, states);
-        let mut add = |input: &[f64; STATES], age: usize, periods: usize| {
-            let mut carried = *input;
-            for _ in 0..periods {
-                carried = applied(&self.period, &carried);
-            }
-            let reference = sent.get(age).copied().unwrap_or(0.0);
-            ahead
-                .iter_mut()
-                .zip(carried)
-                .for_each(|(state, input)| *state += input * reference);
+        let later = |over, states: &[f64; STATES], input: &[f64; STATES], age: usize| {
+            let (carried, reference) =
+                (applied(over, states), sent.get(age).copied().unwrap_or(0.0));
+            core::array::from_fn(|i| carried[i] + input[i] * reference)
         };
-        add(&self.part, self.late, self.late);
-        for age in 0..self.late {
-            add(&self.whole, age, age);
-        }
-        ahead
+        let after_part = later(&self.over_part, states, &self.part, self.late);
+        (0..self.late).rev().fold(after_part, |states, age| {
+            later(&self.period, &states, &self.whole, age)
+        })
     }
 
     /// Returns the ideal reference speed of an axis with these states: it makes up for the integral.

@@ -39,6 +39,12 @@ pub(super) struct LoopMargins {
 }
 
 impl LoopMargins {
+    /// Margins of a loop that is never near to being unstable.
+    const UNBOUNDED: Self = Self {
+        gain: f64::INFINITY,
+        phase_rad: core::f64::consts::PI,
+    };
+
     /// Returns the smaller margin as a part of the one that a loop has to have: sound from 1 on.
     pub(super) fn share(self) -> f64 {
         (libm::log(self.gain) / libm::log(GAIN)).min(self.phase_rad / PHASE_RAD)
@@ -54,13 +60,7 @@ impl LoopMargins {
         let rest = changed.iter().rev().take(TAIL).sum::<f64>() / TAIL as f64;
         let ratio =
             libm::exp(libm::log(core::f64::consts::PI / LOWEST_RAD) / f64::from(FREQUENCIES - 1));
-        let (mut margins, mut last) = (
-            Self {
-                gain: f64::INFINITY,
-                phase_rad: core::f64::consts::PI,
-            },
-            None,
-        );
+        let (mut margins, mut last) = (Self::UNBOUNDED, None);
         let mut rad = LOWEST_RAD;
         for _ in 0..FREQUENCIES {
             let open = open_loop(&changed, rest, rad);
@@ -159,4 +159,47 @@ fn changed(
         before = measured;
         command + unit
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn margins_are_where_a_loop_crosses_the_real_axis_and_the_unit_circle() {
+        let mut margins = LoopMargins::UNBOUNDED;
+        margins.take_in([-0.4, -0.1], [-0.4, 0.1]);
+        assert_eq!(margins.gain, 2.5);
+        // Beyond -1 and right of zero a crossing is no limit of a rising gain.
+        margins.take_in([-1.4, -0.1], [-1.4, 0.1]);
+        margins.take_in([0.4, -0.1], [0.4, 0.1]);
+        assert_eq!(margins.gain, 2.5);
+        // At 30 degrees from -1, from outside to inside.
+        let (sin, cos) = libm::sincos(core::f64::consts::PI / 6.0);
+        margins.take_in([-1.01 * cos, -1.01 * sin], [-0.99 * cos, -0.99 * sin]);
+        assert!((margins.phase_rad - core::f64::consts::PI / 6.0).abs() < 1e-9);
+        assert!(margins.share() < 1.0);
+    }
+
+    #[test]
+    fn an_integrator_has_the_loop_of_its_sum() {
+        // Commands that repeat -0.5 of all before: S = (1 - z) / (1 - 0.5 z), L = 0.5 z / (1 - z),
+        // z one period of delay.
+        let mut left = 1.0;
+        let changed = core::array::from_fn(|n| {
+            let command = if n == 0 { 1.0 } else { -0.5 * left };
+            left = if n == 0 { 1.0 } else { 0.5 * left };
+            command
+        });
+        for rad in [0.1_f64, 1.0, 3.0] {
+            let (sin, cos) = libm::sincos(-rad);
+            let [re, im] = open_loop(&changed, 0.0, rad);
+            // L (1 - z) = 0.5 z.
+            let product = [re * (1.0 - cos) + im * sin, im * (1.0 - cos) - re * sin];
+            assert!(
+                (product[0] - 0.5 * cos).abs() < 1e-9 && (product[1] - 0.5 * sin).abs() < 1e-9,
+                "{rad}: {product:?}"
+            );
+        }
+    }
 }
