@@ -20,6 +20,7 @@ use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 use crate::supervisor::outliers::{self, Outliers};
 use crate::supervisor::whiteness::{LEVELS, Whiteness};
 
+use super::control_weight::LqgSettings;
 use super::gain_table::GainTable;
 use super::linear::{LinearAxis, LinearCourse, STATES, measured_rad2};
 use super::riccati::{StateMatrix, applied, filter};
@@ -175,21 +176,20 @@ fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -
 }
 
 impl FilterModel {
-    /// Creates the model of an axis, whose filter assumes `noise` times the stated variance of the
-    /// measurement. If the controller learns, it also has gains for other statistics.
-    pub(super) fn new(axis_model: AxisModel, noise: f64, learns: bool) -> Self {
+    /// Creates the model of an axis. If the controller learns, it also has gains for other statistics.
+    pub(super) fn new(axis_model: AxisModel, settings: &LqgSettings) -> Self {
         let AxisModel {
             parameters,
             periods,
             ..
         } = &axis_model;
         let linear = LinearAxis::new(&axis_model);
-        let (states, _, of_loads) = linear.sampled();
+        let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
-        let gains = |variance_rad2: f64| filter(&states, &of_loads, &measured, variance_rad2);
-        let filtered_rad2 = noise * measured_rad2(parameters);
-        let gains = if learns {
+        let gains = |variance_rad2: f64| filter(&states, &noise, &measured, variance_rad2);
+        let filtered_rad2 = settings.assumed_noise() * measured_rad2(parameters);
+        let gains = if settings.learns {
             GainTable::new(filtered_rad2, gains)
         } else {
             GainTable::constant(gains(filtered_rad2))

@@ -25,10 +25,6 @@ const TAIL: usize = 100;
 /// period.
 const FREQUENCIES: u32 = 160;
 const LOWEST_RAD: f64 = 0.02;
-/// Factor on the gain and lag, rad, at which the loop has to be stable: 6 dB and 40 degrees.
-const GAIN: f64 = 2.0;
-const PHASE_RAD: f64 = 0.698;
-
 /// Margins of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LoopMargins {
@@ -44,11 +40,6 @@ impl LoopMargins {
         gain: f64::INFINITY,
         phase_rad: core::f64::consts::PI,
     };
-
-    /// Returns the smaller margin as a part of the one that a loop has to have: sound from 1 on.
-    pub(super) fn share(self) -> f64 {
-        (libm::log(self.gain) / libm::log(GAIN)).min(self.phase_rad / PHASE_RAD)
-    }
 
     /// Returns the margins of a filter and a regulator with these gains on the axis of the filter.
     pub(super) fn of(
@@ -178,7 +169,6 @@ mod tests {
         let (sin, cos) = libm::sincos(core::f64::consts::PI / 6.0);
         margins.take_in([-1.01 * cos, -1.01 * sin], [-0.99 * cos, -0.99 * sin]);
         assert!((margins.phase_rad - core::f64::consts::PI / 6.0).abs() < 1e-9);
-        assert!(margins.share() < 1.0);
     }
 
     #[test]

@@ -44,7 +44,6 @@ pub(super) struct AxisLqg {
     inverse: AxisInverse,
     twist: Option<ScrewTwist>,
     regulator: WeightedGains,
-    margins: LoopMargins,
     command_model: CommandModel,
     bounds: OffsetBounds,
     /// Learner of the model errors; `None` if the model is exact.
@@ -224,21 +223,19 @@ impl ModelRun {
 impl AxisLqg {
     /// Creates an axis from its model.
     pub(super) fn new(axis_model: AxisModel, settings: LqgSettings) -> Self {
+        let model = FilterModel::new(axis_model, &settings);
         let regulated = command_weight::regulated_axis(&axis_model);
         let command_model = CommandModel::new(&axis_model);
         let control_weight_s2 = settings.lowest_control_weight_s2(&axis_model.parameters);
         let gains = command_weight::gains(&regulated, &command_model);
-        let design = |noise: f64| {
-            let model = FilterModel::new(axis_model, noise, settings.learns);
-            let weight = settings.quiet_command_weight(&axis_model, |weight| {
+        let command_weight = if settings.command_weight > 0.0 {
+            settings.quiet_command_weight(&axis_model, |weight| {
                 let gains = gains([control_weight_s2, weight]);
                 command_weight::noise_rad(&regulated, &command_model, &gains, model.innovations())
-            });
-            let near = gains([control_weight_s2, weight]);
-            let margins = LoopMargins::of(&model, &command_model, &near);
-            ((model, weight, margins), margins.share())
+            })
+        } else {
+            0.0
         };
-        let (model, command_weight, margins) = settings.sound_design(design);
         let regulator = WeightedGains::new([control_weight_s2, command_weight], gains);
         let least_inertia = || command_weight::least_inertia(&axis_model, &regulator.near());
         Self {
@@ -252,7 +249,6 @@ impl AxisLqg {
                 .learns
                 .then(|| Learner::new(axis_model, &model.linear, least_inertia())),
             regulator,
-            margins,
             command_model,
             other: model.clone(),
             may_learn: true,
@@ -277,11 +273,12 @@ impl AxisLqg {
     /// Returns the gains near the reference.
     pub(super) fn gains(&self) -> LqgGains {
         let near = self.regulator.near();
+        let margins = LoopMargins::of(&self.model, &self.command_model, &near);
         LqgGains {
             filter: self.model.gains_as_given(),
             regulator: core::array::from_fn(|state| near[state]),
-            gain_margin: self.margins.gain,
-            phase_margin_rad: self.margins.phase_rad,
+            gain_margin: margins.gain,
+            phase_margin_rad: margins.phase_rad,
         }
     }
 
