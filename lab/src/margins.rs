@@ -39,8 +39,6 @@ pub struct Margins {
     pub gain: f64,
     /// Smallest lag at which it becomes unstable, rad.
     pub phase_rad: f64,
-    /// Largest sensitivity.
-    pub sensitivity: f64,
 }
 
 /// The path: an axis that speeds up and then keeps its speed.
@@ -74,7 +72,7 @@ pub fn margins(machine: &Machine, axis: usize, model: AxisModel, settings: LqgSe
     let tail = (TAIL * changed.len() as f64) as usize;
     let rest = changed.iter().rev().take(tail).sum::<f64>() / tail as f64;
     let lowest_rad = TAU * LOWEST_HZ * machine.period.servo_s;
-    let sensitivities: Vec<Complex<f64>> = (1..=FREQUENCIES)
+    let open: Vec<Complex<f64>> = (1..=FREQUENCIES)
         .map(|n| PI * f64::from(n) / f64::from(FREQUENCIES))
         .filter(|rad| *rad > lowest_rad)
         .map(|rad| {
@@ -82,15 +80,14 @@ pub fn margins(machine: &Machine, axis: usize, model: AxisModel, settings: LqgSe
             let after = (Complex::new(1.0, 0.0) - turn).inv() * rest;
             // Horner's rule, from the end on.
             let commands = changed.iter().rev();
-            commands.fold(after, |sum, command| sum * turn + command)
+            let sensitivity = commands.fold(after, |sum, command| sum * turn + command);
+            sensitivity.inv() - 1.0
         })
         .collect();
     let size = |z: &Complex<f64>| libm::hypot(z.re, z.im);
-    let open: Vec<Complex<f64>> = sensitivities.iter().map(|s| s.inv() - 1.0).collect();
     let mut margins = Margins {
         gain: f64::INFINITY,
         phase_rad: PI,
-        sensitivity: sensitivities.iter().map(size).fold(0.0, f64::max),
     };
     let end = open.last().map(|z| [z.conj(), *z]);
     let pairs = open.windows(2).map(|pair| [pair[0], pair[1]]);

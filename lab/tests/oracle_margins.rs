@@ -44,7 +44,7 @@ fn the_predicted_margins_are_those_of_the_controller_as_it_runs() {
     }
 }
 
-/// By exact models, too, the filter assumes more noise than there is.
+/// The filter assumes more noise than there is, with an exact model too.
 #[test]
 fn a_controller_that_learns_keeps_margins_on_machines_with_noise() {
     for (name, least) in [("workshop", [1.85, 37.0]), ("stiff", [3.0, 50.0])] {

@@ -240,7 +240,7 @@ impl AxisInverse {
         let change_1_s =
             (parameters.kd + self.axis_model.parameters.velocity_feedforward) / servo_s;
         let torque_1_s = self.torque_for_lead_1_s();
-        let [within, _] = self.integral_gains();
+        let [within, _] = integral_gains(&self.axis_model);
         let needed_mm_s = missing.torque_mm_s - self.integral_mm_s
             + (1.0 + within) * (missing.speed_mm_s + change_1_s * last_mm)
             + torque_1_s * (2.0 * last_mm - self.lead_before_mm);
@@ -262,7 +262,7 @@ impl AxisInverse {
             speed_mm_s,
             torque_mm_s,
         } = self.missing(Gains::EXACT, &at_mm, [0.0; 2], load_mm_s);
-        let [within, _] = self.integral_gains();
+        let [within, _] = integral_gains(&self.axis_model);
         let parameters = &self.axis_model.parameters;
         let integral_mm_s = integral_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
         speed_mm_s + (torque_mm_s - integral_mm_s) / (1.0 + within)
@@ -272,7 +272,7 @@ impl AxisInverse {
     /// had.
     #[inline]
     fn take_in(&mut self, last_mm: f64) {
-        let [_, over] = self.integral_gains();
+        let [_, over] = integral_gains(&self.axis_model);
         if over > 0.0 {
             let parameters = &self.axis_model.parameters;
             let change_1_s =
@@ -283,22 +283,6 @@ impl AxisInverse {
                 parameters.torque_limit_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
             let integral_mm_s = self.integral_mm_s + over * (asked_mm_s - self.missing.speed_mm_s);
             self.integral_mm_s = bounded(integral_mm_s, -limit, limit);
-        }
-    }
-
-    /// Returns the gains of the integral for a speed error that lasts for a servo period: its mean
-    /// within the period and its value at the end.
-    #[inline]
-    fn integral_gains(&self) -> [f64; 2] {
-        let time_s = self.axis_model.parameters.speed_integral_s;
-        if time_s > 0.0 {
-            let periods = &self.axis_model.periods;
-            [
-                0.5 * (periods.servo_s + periods.mechanics_s) / time_s,
-                periods.servo_s / time_s,
-            ]
-        } else {
-            [0.0; 2]
         }
     }
 
@@ -401,5 +385,20 @@ impl AxisInverse {
             sum_nm += friction.along_nm(at_rad_s, step_s, &mut self.presliding_nm);
         }
         sum_nm / f64::from(FRICTION_STEPS)
+    }
+}
+
+/// Returns the gains of the integral of a speed loop for a speed error that lasts for a servo period:
+/// its mean within the period and its value at the end.
+#[inline]
+pub(crate) fn integral_gains(axis_model: &AxisModel) -> [f64; 2] {
+    let (time_s, periods) = (axis_model.parameters.speed_integral_s, &axis_model.periods);
+    if time_s > 0.0 {
+        [
+            0.5 * (periods.servo_s + periods.mechanics_s) / time_s,
+            periods.servo_s / time_s,
+        ]
+    } else {
+        [0.0; 2]
     }
 }

@@ -50,9 +50,10 @@ const SCREW_RAD: f64 = 2.0;
 /// of the command is limited: the less it follows a measurement, the larger are the margins of the
 /// loop. With 16 the gain margin on `workshop` is 2.0 and its phase margin 40 degrees, with 4 they
 /// are 1.7 and 31, with 1 1.5 and 25; `router`, whose command is at its limit all the time, leaves
-/// 611 um with 1, where 255 are uncorrected, and 211 with 16. `stiff` has sound margins with 8 too; a
-/// machine that differs a little then leaves 0.75 of its error, with 16 no more than 0.3. Without a limit the first motion counts
-/// more: a machine three times as heavy as its model is worse with 4.
+/// 611 um with 1, where 255 are uncorrected, and 211 with 16. `stiff` has sound margins with 8 too,
+/// but where the machine differs a little from its model, up to 0.75 of the error is left with it.
+/// Without a limit the first motion counts more: a machine three times as heavy as its model is worse
+/// with 4.
 const ASSUMED_NOISE: f64 = 16.0;
 
 impl LqgSettings {

@@ -20,6 +20,7 @@
 //! noise; sampling as in Franklin, Powell and Workman (1998), section 4.3, here by the same steps
 //! as in the plant.
 
+use crate::axis::inverse::integral_gains;
 use crate::axis::transmission::TransmissionModel;
 use crate::axis::{AxisModel, Parameters};
 
@@ -157,13 +158,14 @@ impl LinearAxis {
             );
             covariance = sum(&spread, &self.substep_noise);
         }
-        (states, self.held(&self.substep_input), covariance)
+        let input = self.held(&self.substep_input, self.substeps);
+        (states, input, covariance)
     }
 
-    /// Returns the change of the states over a servo period by an input that adds this in each
-    /// mechanics period.
-    fn held(&self, substep_input: &[f64; STATES]) -> [f64; STATES] {
-        (0..self.substeps).fold([0.0; STATES], |input, _| {
+    /// Returns the change of the states over a number of mechanics periods by an input that adds
+    /// this in each of them.
+    fn held(&self, substep_input: &[f64; STATES], substeps: u32) -> [f64; STATES] {
+        (0..substeps).fold([0.0; STATES], |input, _| {
             let carried = applied(&self.substep, &input);
             core::array::from_fn(|i| carried[i] + substep_input[i])
         })
@@ -172,7 +174,7 @@ impl LinearAxis {
     /// Returns the change of the states by each input that is held over a servo period.
     pub(super) fn inputs(&self) -> PeriodInputs {
         let (states, reference, _) = self.sampled();
-        let torque = self.held(&self.substep_torque);
+        let torque = self.held(&self.substep_torque, self.substeps);
         let load = core::array::from_fn(|i| if i == DRIFT { 0.0 } else { states[i][DRIFT] });
         PeriodInputs {
             reference,
@@ -261,34 +263,23 @@ impl LinearCourse {
     /// Creates the course of an axis whose references act `late` mechanics periods after the
     /// measurement from which they follow.
     pub(super) fn new(axis: &LinearAxis, axis_model: &AxisModel, late: u32) -> Self {
-        let (parameters, periods) = (&axis_model.parameters, axis_model.periods);
         let substeps = axis.substeps.max(1);
+        let beyond = late % substeps;
         let over = |number: u32| {
-            let (mut states, mut input): (StateMatrix<STATES>, _) =
-                (core::array::from_fn(unit), [0.0; STATES]);
-            for _ in 0..number {
-                states = product(&axis.substep, &states);
-                let carried = applied(&axis.substep, &input);
-                input = core::array::from_fn(|i| carried[i] + axis.substep_input[i]);
-            }
-            (states, input)
+            (0..number).fold(core::array::from_fn(unit), |states, _| {
+                product(&axis.substep, &states)
+            })
         };
-        let (period, whole) = over(substeps);
-        let (over_part, part) = over(late % substeps);
-        let (_, rest) = over(substeps - late % substeps);
-        let within = if parameters.speed_integral_s > 0.0 {
-            0.5 * (periods.servo_s + periods.mechanics_s) / parameters.speed_integral_s
-        } else {
-            0.0
-        };
+        let held = |number: u32| axis.held(&axis.substep_input, number);
+        let [within, _] = integral_gains(axis_model);
         Self {
             late: (late / substeps) as usize,
-            period,
-            over_part,
-            part,
-            rest,
-            whole,
-            by_integral: -1.0 / (parameters.kv_nm_s_per_rad * (1.0 + within)),
+            period: over(substeps),
+            over_part: over(beyond),
+            part: held(beyond),
+            rest: held(substeps - beyond),
+            whole: held(substeps),
+            by_integral: -1.0 / (axis_model.parameters.kv_nm_s_per_rad * (1.0 + within)),
         }
     }
 

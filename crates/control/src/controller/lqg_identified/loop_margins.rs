@@ -25,6 +25,7 @@ const TAIL: usize = 100;
 /// period.
 const FREQUENCIES: u32 = 160;
 const LOWEST_RAD: f64 = 0.02;
+
 /// Margins of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LoopMargins {
