@@ -12,7 +12,7 @@ use feedwright_control::{
     INPUTS, Inputs, InvertingSettings, Measured, Schedule, TwoDimensional, Window, seen_feed,
 };
 use feedwright_gcode::canon::{Corner, Plane, Shape};
-use feedwright_ident::{Excitation, Training, train_contour};
+use feedwright_ident::{Excitation, TrainContour, Training};
 use feedwright_lab::motion;
 use feedwright_sim::{Machine, Run, Sink, path_steps};
 
@@ -147,7 +147,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (name, excitation) in programmes {
         for seed in 1..=3 {
             let (recording, rng) = excitation.record::<2>(&machine, seed);
-            let trained = train_contour(&recording, &Training::default(), rng, &mut |_| {});
+            let trained = Training::default().train(&recording, rng, &mut |_| {});
             let [now, one, two, ..] = effect_as_learnt(&trained.net, &plain);
             let [printed, exact] = [Gradient::Printed, Gradient::Exact]
                 .map(|gradient| errors(&machine, &trained.net, gradient));

@@ -48,15 +48,8 @@ fn row(name: &str, machine: &Machine, controller: &str) -> Result<String, Failur
     let entry = CONTROLLERS
         .find(controller)
         .ok_or("there is no such controller")?;
-    let mut controller = Make::<2>::make(entry, &mut Setup::new(machine, &choices));
-    let plan = match fastest::<2>(
-        machine,
-        TOLERANCE_UM,
-        all,
-        &mut *controller,
-        entry.laps,
-        &(),
-    ) {
+    let mut controller = entry.make(&mut Setup::new(machine, &choices), 2);
+    let plan = match fastest(machine, TOLERANCE_UM, all, &mut controller, entry.laps, &()) {
         Err(error @ FastestError::Impossible { .. }) => return Ok(error.to_string()),
         plan => plan?,
     };

@@ -6,7 +6,7 @@
 //! cargo run --release -p feedwright-lab --example margins [MACHINE...]
 //! ```
 
-use feedwright::{BEST, Choices, Make, Setup, recorded_machine};
+use feedwright::{BEST, Choices, Setup, recorded_machine};
 use feedwright_control::{AxisModel, IDENTIFIED_WEIGHT, LqgIdentified, LqgSettings};
 use feedwright_lab::CONTROLLERS;
 use feedwright_lab::margins::margins;
@@ -34,7 +34,7 @@ fn main() -> miette::Result<()> {
         let weight = IDENTIFIED_WEIGHT.default;
         let settings = LqgSettings::identified(weight, servo_s, setup.offset_bounds());
         let entry = CONTROLLERS.find(BEST);
-        let of_log = entry.and_then(|entry| Make::<2>::make(entry, &mut setup).known());
+        let of_log = entry.and_then(|entry| entry.in_plane(&mut setup).known());
         for (kind, models) in [("exact", Some(exact)), ("log", of_log)] {
             for (axis, model) in models.into_iter().flatten().enumerate() {
                 let [gains] = LqgIdentified::<1>::new([model], settings).gains();

@@ -3,9 +3,9 @@
 
 use std::fmt::Write;
 
-use feedwright::{ArcFit, FitPoint};
 use feedwright_gcode::canon::{Canon, Shape};
 use feedwright_plan::vector::Vector;
+use feedwright_plan::{ArcFit, FitPoint};
 use feedwright_plan::{Curve, PathError, Step};
 use feedwright_sim::trimmed;
 

@@ -19,13 +19,13 @@ use feedwright::{
     BEST, Choices, Entry, LogIdentified, LogJob, LogJobError, Make, ModelMisfit, Setup, Statistics,
     UNCORRECTED, machine_text,
 };
-use feedwright_control::{Controller, Uncorrected};
+use feedwright_control::Uncorrected;
 use feedwright_ident::{
     AxisFacts, Columns, ExciteOptions, FoundAxis, Log, Model, ModelTerm, excitation_program,
 };
 use feedwright_sim::{
-    AXIS_NAMES, Cancelled, Machine, Measurement, Mechanism, Outcome, PlanCache, Run, RunError,
-    Watch,
+    AXIS_NAMES, BoxedController, Cancelled, Machine, Measurement, Mechanism, Outcome, PlanCache,
+    Run, RunError, Watch,
 };
 use miette::Result;
 use rayon::prelude::*;
@@ -302,18 +302,15 @@ fn linear(found: &FoundAxis) -> LinearPart {
 type CutOnce = (Figures, [f64; 2], Option<String>);
 
 /// One program on one machine with all controllers.
-fn cut_program<const N: usize>(
+fn cut_program(
     identified: &Identified,
     program: &SweepProgram,
     options: &IndependentOptions,
     watch: &dyn Watch,
-) -> Result<Vec<IndependentCut>, Cancelled>
-where
-    Entry: Make<N>,
-{
+) -> Result<Vec<IndependentCut>, Cancelled> {
     let plan = PlanCache::default();
     let cut = |entry: &'static Entry| {
-        let made = controller::<N>(entry, identified, &options.choices);
+        let made = controller(entry, program.axes, identified, &options.choices);
         cut_once(identified, program, entry, made, (&plan, watch))
     };
     let base = cut(&UNCORRECTED)?;
@@ -339,31 +336,29 @@ where
 }
 
 /// A controller by the machine file, and why there is no model for it.
-fn controller<const N: usize>(
+fn controller(
     entry: &Entry,
+    axes: usize,
     Identified { file, models, .. }: &Identified,
     choices: &Choices,
-) -> (Box<dyn Controller<N>>, Option<String>)
-where
-    Entry: Make<N>,
-{
+) -> (BoxedController, Option<String>) {
     let setup = || Setup::new(file, choices);
-    let made = match models[N - 2].as_ref().filter(|_| entry.name == BEST) {
-        Some(Ok(model)) => entry.make_with::<N>(setup(), model),
-        Some(Err(cause)) => return (Box::new(Uncorrected), Some(cause.to_string())),
-        None => Ok(entry.make(&mut setup())),
+    let made = match models[axes - 2].as_ref().filter(|_| entry.name == BEST) {
+        Some(Ok(model)) => entry.make_with(setup(), axes, model),
+        Some(Err(cause)) => return (BoxedController::uncorrected(axes), Some(cause.to_string())),
+        None => Ok(entry.make(&mut setup(), axes)),
     };
     match made {
         Ok(controller) => (controller, None),
-        Err(cause) => (Box::new(Uncorrected), Some(cause.to_string())),
+        Err(cause) => (BoxedController::uncorrected(axes), Some(cause.to_string())),
     }
 }
 
-fn cut_once<const N: usize>(
+fn cut_once(
     Identified { machine, file, .. }: &Identified,
     program: &SweepProgram,
     entry: &Entry,
-    (mut controller, without_model): (Box<dyn Controller<N>>, Option<String>),
+    (mut controller, without_model): (BoxedController, Option<String>),
     (plan, watch): (&PlanCache, &dyn Watch),
 ) -> Result<CutOnce, Cancelled> {
     let plant = |start_mm: [f64; 3], _: u64| -> Box<dyn Mechanism> {
@@ -375,7 +370,8 @@ fn cut_once<const N: usize>(
         .laps(entry.laps)
         .sharing(plan)
         .watched(watch);
-    match run.cut_steps(&program.steps, &mut *controller, &mut [&mut statistics]) {
+    let mut steps = || Ok(Box::new(program.steps.iter().cloned().map(Ok)) as _);
+    match run.cut_boxed(&mut steps, &mut controller, &mut [&mut statistics]) {
         Ok(done) => {
             let encoders_um = done.joint_error.map_or([0.0; 2], |error| {
                 [error.rms_mm, error.max_mm].map(|mm| 1e3 * mm)
@@ -426,10 +422,7 @@ pub(crate) fn independent(
                     programs.len() as u64,
                 );
                 let cut = |program: &SweepProgram| {
-                    let cuts = match program.axes {
-                        2 => cut_program::<2>(&identified, program, options, watch),
-                        _ => cut_program::<3>(&identified, program, options, watch),
-                    };
+                    let cuts = cut_program(&identified, program, options, watch);
                     watch.advance(1);
                     cuts
                 };

@@ -2,7 +2,7 @@
 //! the training.
 
 use crate::sweep::part_or_whole;
-use feedwright::{Choices, Make, Setup};
+use feedwright::{Choices, Setup};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_lab::CONTROLLERS;
 use feedwright_sim::{Machine, Row, Run, Sink, path_steps};
@@ -76,7 +76,7 @@ fn circle_behind(length_mm: f64, machine: &Machine, seed: u64) -> f64 {
     };
     let mut setup = Setup::new(&nominal, &choices);
     setup.known = machine.known();
-    let mut controller = Make::<2>::make(CONTROLLERS.find(REGULATOR).unwrap(), &mut setup);
+    let mut controller = CONTROLLERS.find(REGULATOR).unwrap().in_plane(&mut setup);
     let mut error = LineError {
         line: 2,
         square_um2: 0.0,

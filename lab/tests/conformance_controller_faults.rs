@@ -5,7 +5,7 @@
 //! gently, that it comes back, and that the cut is no worse than uncorrected.
 
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, BEST, Choices, MAX_UM, Make, Setup};
+use feedwright::{BASELINE, BEST, Choices, MAX_UM, Setup};
 use feedwright_control::vector::sub;
 use feedwright_control::{Bounds, Controller, Knot, State, Tick};
 use feedwright_lab::{CONTROLLERS, Workpiece};
@@ -133,7 +133,7 @@ fn reference(machine: &Machine, steps: &[Step]) -> Reference<'static> {
 fn controller(machine: &Machine, name: &str) -> Box<dyn Controller<2>> {
     let choices = Choices::default();
     let mut setup = Setup::new(machine, &choices);
-    Make::<2>::make(CONTROLLERS.find(name).unwrap(), &mut setup)
+    CONTROLLERS.find(name).unwrap().in_plane(&mut setup)
 }
 
 fn bounds<const N: usize>(machine: &Machine) -> Bounds<N> {

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use feedwright::{Choices, Entry, Make, Setting, Setup};
+use feedwright::{Choices, Entry, Setting, Setup};
 use feedwright_control::{
     Bounds, Command, Controller, Knot, KnotSource, Measured, Schedule, Tick, Window,
 };
@@ -82,8 +82,8 @@ macro_rules! for_every_controller {
         for entry in CONTROLLERS {
             let choices = Choices::default();
             let mut setup = Setup::new(machine(), &choices);
-            $check::<2>(entry.name, &mut *Make::<2>::make(entry, &mut setup));
-            $check::<3>(entry.name, &mut *Make::<3>::make(entry, &mut setup));
+            $check::<2>(entry.name, &mut *entry.in_plane(&mut setup));
+            $check::<3>(entry.name, &mut *entry.in_space(&mut setup));
         }
     };
 }
@@ -146,11 +146,7 @@ fn every_parameter_acts_and_at_both_ends_the_command_stays_within_the_limits() {
         let swaying = |n: u32, lagging: [f64; 2]| {
             [lagging[0] + 0.02 * (0.02 * f64::from(n)).sin(), lagging[1]]
         };
-        commands::<2>(
-            &mut Circle,
-            &mut *Make::<2>::make(entry, &mut setup),
-            swaying,
-        )
+        commands::<2>(&mut Circle, &mut *entry.in_plane(&mut setup), swaying)
     };
     let mut wrong = Vec::new();
     for entry in CONTROLLERS {
@@ -284,7 +280,7 @@ fn a_controller_is_shown_what_the_encoder_measures_and_not_where_the_tool_is() {
     for entry in CONTROLLERS {
         let choices = Choices::default();
         let mut setup = Setup::new(machine(), &choices);
-        let mut controller = Make::<2>::make(entry, &mut setup);
+        let mut controller = entry.in_plane(&mut setup);
         let mut shown = Shown {
             controller: &mut *controller,
             positions_mm: Vec::new(),

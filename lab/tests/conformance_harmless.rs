@@ -2,7 +2,7 @@
 //! values that are recorded of it.
 
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, CONTROLLERS, Choices, Entry, Make, Setup, Statistics};
+use feedwright::{BASELINE, CONTROLLERS, Choices, Entry, Setup, Statistics};
 use feedwright_lab::Workpiece;
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Run};
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ fn cut_um(
     entry: &'static Entry,
     choices: &Choices,
 ) -> [f64; 2] {
-    let mut controller = Make::<2>::make(entry, &mut Setup::new(machine, choices));
+    let mut controller = entry.in_plane(&mut Setup::new(machine, choices));
     let mut statistics = Statistics::new();
     Run::on(machine)
         .laps(entry.laps)

@@ -2,7 +2,7 @@
 //! from well.
 
 use crate::identification_log::log_of;
-use feedwright::{Choices, LogJob, Make, Setup, machine_text};
+use feedwright::{Choices, LogJob, Setup, machine_text};
 use feedwright_gcode::canon::Corner;
 use feedwright_ident::AxisFacts;
 use feedwright_lab::{CONTROLLERS, contour};
@@ -35,10 +35,10 @@ impl Sink for ContourError {
 /// RMS contour error on a machine, um, of a controller that was set up on another file of it.
 fn rms_um(controller: &str, file: &Machine, machine: &Machine, name: &str) -> f64 {
     let choices = Choices::default();
-    let mut controller = Make::<2>::make(
-        CONTROLLERS.find(controller).unwrap(),
-        &mut Setup::new(file, &choices),
-    );
+    let mut controller = CONTROLLERS
+        .find(controller)
+        .unwrap()
+        .in_plane(&mut Setup::new(file, &choices));
     let steps = contour(name)
         .unwrap()
         .steps(FEED_MM_S, Corner::ExactPath)

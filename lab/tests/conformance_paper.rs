@@ -7,7 +7,7 @@
 use std::sync::OnceLock;
 
 use feedwright::identified;
-use feedwright_ident::{Excitation, Training, train_contour};
+use feedwright_ident::{Excitation, TrainContour, Training};
 use feedwright_lab::{Paper, experiment};
 use feedwright_sim::Machine;
 
@@ -110,7 +110,7 @@ fn the_cache_holds_what_training_gives() {
     let (machine, excitation, training) = (machine(), Excitation::paper(), Training::default());
     let cached = identified::<2>(&machine, &excitation, &training, 1, &mut |_| {});
     let (recording, rng) = excitation.record::<2>(&machine, 1);
-    let trained = train_contour(&recording, &training, rng, &mut |_| {});
+    let trained = training.train(&recording, rng, &mut |_| {});
     assert!(
         cached == trained,
         "hint: raise FORMAT in crates/feedwright/src/identifier_cache.rs"

@@ -100,22 +100,17 @@ const HELD: &[Held] = &[
 ];
 
 /// RMS contour error, um, and machining time, s.
-fn cut<const N: usize>(machine: &Machine, entry: &Entry, set: &[Setting]) -> [f64; 2]
-where
-    Entry: Make<N>,
-{
-    cut_contour::<N>("circle", machine, entry, set)
+fn cut(machine: &Machine, entry: &Entry, set: &[Setting]) -> [f64; 2] {
+    cut_contour(2, "circle", machine, entry, set)
 }
 
-fn cut_contour<const N: usize>(
+fn cut_contour(
+    axes: usize,
     contour: &str,
     machine: &Machine,
     entry: &Entry,
     set: &[Setting],
-) -> [f64; 2]
-where
-    Entry: Make<N>,
-{
+) -> [f64; 2] {
     let workpiece = Workpiece::contours()
         .into_iter()
         .find(|workpiece| workpiece.name == contour)
@@ -125,20 +120,21 @@ where
         ..Choices::default()
     };
     let mut setup = Setup::new(machine, &choices);
-    let mut controller = Make::<N>::make(entry, &mut setup);
+    let mut controller = entry.make(&mut setup, axes);
     let mut statistics = Statistics::new();
     let run = Run::on(machine)
         .laps(entry.laps)
-        .cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics])
+        .cut_boxed(
+            &mut || Ok(Box::new(workpiece.steps.iter().cloned().map(Ok))),
+            &mut controller,
+            &mut [&mut statistics],
+        )
         .unwrap();
     assert!(run.faded_out.is_none(), "{}: {run:?}", entry.name);
     [statistics.rms_um(), run.time_s]
 }
 
-fn all_are_held<const N: usize>()
-where
-    Entry: Make<N>,
-{
+fn all_are_held(axes: usize) {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let mut failures = Vec::new();
     // Identifiers of two and of three axes are not the same: values that were chosen are so for the
@@ -149,12 +145,22 @@ where
         set,
         rms,
         time,
-    } in HELD.iter().filter(|held| N == 2 || held.set.is_empty())
+    } in HELD.iter().filter(|held| axes == 2 || held.set.is_empty())
     {
-        let [open_um, open_s] =
-            cut_contour::<N>(contour, &machine, CONTROLLERS.find(BASELINE).unwrap(), &[]);
-        let [rms_um, time_s] =
-            cut_contour::<N>(contour, &machine, CONTROLLERS.find(name).unwrap(), set);
+        let [open_um, open_s] = cut_contour(
+            axes,
+            contour,
+            &machine,
+            CONTROLLERS.find(BASELINE).unwrap(),
+            &[],
+        );
+        let [rms_um, time_s] = cut_contour(
+            axes,
+            contour,
+            &machine,
+            CONTROLLERS.find(name).unwrap(),
+            set,
+        );
         let (of_rms, of_time) = (rms_um / open_um, time_s / open_s);
         let what =
             format!("{name} {set:?}: RMS {of_rms:.4} of the uncorrected cut's, time {of_time:.4}");
@@ -165,17 +171,17 @@ where
             failures.push(format!("{what}; held to {rms} and {time:?}"));
         }
     }
-    assert!(failures.is_empty(), "{N} axes:\n{}", failures.join("\n"));
+    assert!(failures.is_empty(), "{axes} axes:\n{}", failures.join("\n"));
 }
 
 #[test]
 fn every_controller_does_in_the_plane_what_it_is_there_for() {
-    all_are_held::<2>();
+    all_are_held(2);
 }
 
 #[test]
 fn every_controller_does_in_space_what_it_is_there_for() {
-    all_are_held::<3>();
+    all_are_held(3);
 }
 
 #[test]
@@ -240,9 +246,9 @@ fn what_drives_do_by_themselves_is_not_done_twice_and_what_they_do_late_is_done_
                 ..*axis
             };
         }
-        let [open_um, _] = cut::<2>(&machine, CONTROLLERS.find(BASELINE).unwrap(), &[]);
+        let [open_um, _] = cut(&machine, CONTROLLERS.find(BASELINE).unwrap(), &[]);
         for (name, held) in HELD_ON_WORKSHOP {
-            let [rms_um, _] = cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[]);
+            let [rms_um, _] = cut(&machine, CONTROLLERS.find(name).unwrap(), &[]);
             let what = format!(
                 "{name}, {measurement_delay_s} s, {acceleration_feedforward}: {rms_um:.4} of {open_um:.4} um"
             );
@@ -255,7 +261,7 @@ fn what_drives_do_by_themselves_is_not_done_twice_and_what_they_do_late_is_done_
 #[test]
 fn where_drives_feed_forward_by_themselves_as_delivered_is_uncorrected() {
     let machine = drive_of_workshop();
-    let cut = |name| cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[]);
+    let cut = |name| cut(&machine, CONTROLLERS.find(name).unwrap(), &[]);
     assert_eq!(cut("feedforward-as-delivered"), cut(BASELINE));
 }
 
@@ -272,14 +278,14 @@ const LIMIT_OF_FEEDBACK: f64 = 0.3;
 #[test]
 fn the_limit_is_below_all_others_under_noise() {
     let machine = combined();
-    let [limit_um, _] = cut::<2>(&machine, CONTROLLERS.find("lqg-preview").unwrap(), &[]);
+    let [limit_um, _] = cut(&machine, CONTROLLERS.find("lqg-preview").unwrap(), &[]);
     for name in [
         "feedforward",
         "feedforward-cross-coupled",
         "kalman-disturbance",
         "model-predictive",
     ] {
-        let [rms_um, _] = cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[]);
+        let [rms_um, _] = cut(&machine, CONTROLLERS.find(name).unwrap(), &[]);
         println!("{name} {rms_um}, limit {limit_um}");
         assert!(
             limit_um < LIMIT_OF_FEEDBACK * rms_um,
@@ -297,7 +303,7 @@ fn without_noise_the_limit_is_no_worse_than_feedforward() {
         .for_each(|axis| axis.disturbance_nm = 0.0);
     for machine in [machine, drive_of_workshop()] {
         let [limit_um, feedforward_um] = ["lqg-preview", "feedforward"]
-            .map(|name| cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[])[0]);
+            .map(|name| cut(&machine, CONTROLLERS.find(name).unwrap(), &[])[0]);
         println!("{}: {limit_um} {feedforward_um}", machine.name);
         assert!(
             limit_um <= feedforward_um,

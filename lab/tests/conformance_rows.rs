@@ -1,11 +1,10 @@
 //! What the rows of a run say about foot and contour error, on every contour of the comparison and
 //! in space.
 
-use feedwright::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright_gcode::{Reader, Settings};
-use feedwright_lab::{CONTROLLERS, Workpiece};
+use feedwright_lab::Workpiece;
 use feedwright_plan::{Step, signed_distance_mm};
-use feedwright_sim::{Machine, Row, Run, path_steps};
+use feedwright_sim::{BoxedController, Machine, Row, Run, path_steps};
 
 /// Rounding of coordinates of some ten millimetres, mm.
 const ROUNDING_MM: f64 = 1e-12;
@@ -13,16 +12,14 @@ const ROUNDING_MM: f64 = 1e-12;
 /// the path on the way.
 const ALONG_MM: f64 = 1e-7;
 
-fn rows<const N: usize>(machine: &Machine, steps: &[Step]) -> Vec<Row>
-where
-    Entry: Make<N>,
-{
-    let choices = Choices::default();
-    let mut setup = Setup::new(machine, &choices);
-    let mut controller = Make::<N>::make(CONTROLLERS.find(BASELINE).unwrap(), &mut setup);
+fn rows(axes: usize, machine: &Machine, steps: &[Step]) -> Vec<Row> {
     let mut rows = Vec::<Row>::new();
     Run::on(machine)
-        .cut_steps(steps, &mut *controller, &mut [&mut rows])
+        .cut_boxed(
+            &mut || Ok(Box::new(steps.iter().cloned().map(Ok))),
+            &mut BoxedController::uncorrected(axes),
+            &mut [&mut rows],
+        )
         .unwrap();
     rows
 }
@@ -55,7 +52,7 @@ fn agrees(row: &Row, axes: usize) {
 fn on_every_contour_the_error_is_from_the_foot_to_the_tool() {
     let machine = tnv40();
     for workpiece in Workpiece::contours() {
-        let rows = rows::<2>(&machine, &workpiece.steps);
+        let rows = rows(2, &machine, &workpiece.steps);
         assert!(rows.len() > 100, "{}: {} rows", workpiece.name, rows.len());
         rows.iter().for_each(|row| agrees(row, 2));
     }
@@ -68,7 +65,7 @@ fn on_the_circle_foot_and_tangent_are_those_of_the_circle() {
         .into_iter()
         .find(|workpiece| workpiece.name == "circle")
         .unwrap();
-    let rows = rows::<2>(&machine, &circle.steps);
+    let rows = rows(2, &machine, &circle.steps);
     let mut largest_mm: f64 = 0.0;
     // The ends of the path are feet of a tool before and beyond them.
     for row in rows
@@ -99,7 +96,7 @@ fn in_space_the_error_is_the_distance_of_the_foot() {
         .unwrap()
         .map(|step| step.unwrap());
     let steps: Vec<Step> = path_steps(canon).map(|step| step.unwrap()).collect();
-    let rows = rows::<3>(&machine, &steps);
+    let rows = rows(3, &machine, &steps);
     assert!(
         rows.iter()
             .any(|row| row.foot_mm[2] < -5.0 && row.contour_error_mm > 1e-4)

@@ -5,10 +5,10 @@
 //! published times are those of the command on the path, as fast as leaves the tool within 10 um.
 
 use feedwright::{FastestPlan, fastest};
-use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Corner;
 use feedwright_lab::{contour, linear_machine};
 use feedwright_plan::Steps;
+use feedwright_sim::BoxedController;
 
 /// Least times of the nonlinear program, s; of the butterfly the best that was found.
 const LEAST_S: [(&str, f64); 4] = [
@@ -25,11 +25,11 @@ fn planned(name: &str, tolerance_um: f64) -> FastestPlan {
     };
     let steps = contour(name).unwrap().steps(200.0, corner).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
-    let plan = fastest::<2>(
+    let plan = fastest(
         &linear_machine(10.0),
         tolerance_um,
         all,
-        &mut Uncorrected,
+        &mut BoxedController::uncorrected(2),
         1,
         &(),
     )
@@ -121,7 +121,16 @@ fn a_missing_jerk_is_the_one_that_reaches_the_acceleration_in_40_ms() {
     let mut bare = linear_machine(10.0);
     let jerk_mm_s3 = bare.axes[1].max_jerk_mm_s3.take().unwrap();
     assert_eq!(jerk_mm_s3, bare.axes[1].max_accel_mm_s2.unwrap() / 0.04);
-    let [found, known] = [bare, linear_machine(10.0)]
-        .map(|machine| fastest::<2>(&machine, 10.0, all, &mut Uncorrected, 1, &()).unwrap());
+    let [found, known] = [bare, linear_machine(10.0)].map(|machine| {
+        fastest(
+            &machine,
+            10.0,
+            all,
+            &mut BoxedController::uncorrected(2),
+            1,
+            &(),
+        )
+        .unwrap()
+    });
     assert_eq!(found.cycle, known.cycle);
 }

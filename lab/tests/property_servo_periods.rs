@@ -2,7 +2,7 @@
 //! not from a millisecond.
 
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, Choices, Make, Setup, Statistics};
+use feedwright::{BASELINE, Choices, Setup, Statistics};
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Machine, Period, Run};
 use rayon::prelude::*;
@@ -24,7 +24,7 @@ const SLOW_RATIO: f64 = 0.6;
 fn cut_um(machine: &Machine, workpiece: &Workpiece, name: &str) -> [f64; 2] {
     let choices = Choices::default();
     let mut setup = Setup::new(machine, &choices);
-    let mut controller = Make::<2>::make(CONTROLLERS.find(name).unwrap(), &mut setup);
+    let mut controller = CONTROLLERS.find(name).unwrap().in_plane(&mut setup);
     let mut statistics = Statistics::new();
     let run = Run::on(machine)
         .cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics])

@@ -4,7 +4,7 @@
 //! And on drives that are just strong enough for the plan.
 
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, BEST, Choices, Make, RMS_UM, Setup, Statistics};
+use feedwright::{BASELINE, BEST, Choices, RMS_UM, Setup, Statistics};
 use feedwright_control::Controller;
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Axis, Limits, Machine, Outcome, Run, RunResult, Transmission};
@@ -59,10 +59,10 @@ fn unseen(seed: u64) -> Machine {
 /// Makes a controller with the model of a machine.
 fn controller(name: &str, machine: &Machine) -> Box<dyn Controller<2>> {
     let choices = Choices::default();
-    Make::<2>::make(
-        CONTROLLERS.find(name).unwrap(),
-        &mut Setup::new(machine, &choices),
-    )
+    CONTROLLERS
+        .find(name)
+        .unwrap()
+        .in_plane(&mut Setup::new(machine, &choices))
 }
 
 fn contours(names: &[&str]) -> Vec<Workpiece> {

@@ -1,6 +1,6 @@
 //! Faults that once occurred, as small as they could be made.
 
-use feedwright::{BEST, Choices, Make, Setup, Statistics};
+use feedwright::{BEST, Choices, Setup, Statistics};
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::{CONTROLLERS, Workpiece};
@@ -149,7 +149,7 @@ fn without_any_deviation_the_command_stays_where_the_path_is() {
         .find(|workpiece| workpiece.name == "square")
         .unwrap();
     let mut setup = Setup::new(&machine, &choices);
-    let mut controller = Make::<2>::make(CONTROLLERS.find(BEST).unwrap(), &mut setup);
+    let mut controller = CONTROLLERS.find(BEST).unwrap().in_plane(&mut setup);
     let mut statistics = Statistics::new();
     Run::on(&machine)
         .cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics])

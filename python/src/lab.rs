@@ -75,19 +75,13 @@ impl GuestRun {
         });
         let plant = plant.as_ref().map(|plant| plant as _);
         let feeds_mm_s = self.task.feeds_mm_s.as_deref();
-        let guests = match &controller {
-            Some(controller) => Guests {
-                plane: Some(controller),
-                space: Some(controller),
-                feeds_mm_s,
-                plant,
+        let guests = Guests {
+            controller: match &controller {
+                Some(controller) => Some(controller),
+                None => Some(&informed),
             },
-            None => Guests {
-                plane: Some(&informed),
-                space: Some(&informed),
-                feeds_mm_s,
-                plant,
-            },
+            feeds_mm_s,
+            plant,
         };
         let (mut columns, mut end) = (RowColumns::new(axes), self.raised.clone());
         let mut sinks: Vec<&mut dyn Sink> = vec![&mut end];

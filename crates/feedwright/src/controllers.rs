@@ -17,12 +17,12 @@ mod recorded;
 use std::ops::Deref;
 
 use feedwright_control::{
-    Controller, ControllerRow, Feedforward, LqgIdentified, MagnitudeOnly, Member, Parameter,
-    TwoDimensional, Uncorrected, Values,
+    Controller, ControllerRow, Feedforward, LqgIdentified, MagnitudeOnly, Member, MemberName,
+    Parameter, TwoDimensional, Uncorrected, Values,
 };
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
-use feedwright_sim::{Machine, StageSteps, Watch};
+use feedwright_sim::{BoxedController, Machine, StageSteps, Watch};
 use serde::Serialize;
 
 pub(crate) use recorded::RecordedValues;
@@ -103,50 +103,67 @@ macro_rules! controller {
     };
 }
 
+/// A row of the family of `feedwright-control`.
+macro_rules! member {
+    ($Name:ident, $row:expr, $summary:literal, $source:literal) => {
+        Entry {
+            row: $row,
+            summary: $summary,
+            source: $source,
+            laps: 1,
+            plane: |setup, values| {
+                setup.member(&$row, values, |data| {
+                    BoxedController::in_plane(MemberName::$Name, data, values)
+                })
+            },
+            space: |setup, values| {
+                setup.member(&$row, values, |data| {
+                    BoxedController::in_space(MemberName::$Name, data, values)
+                })
+            },
+        }
+    };
+}
+
 /// The programmed path at the planned feed.
-pub static UNCORRECTED: Entry = controller!(
+pub static UNCORRECTED: Entry = member!(
+    Uncorrected,
     <Uncorrected as Member<2>>::ROW,
     "the programmed path at the planned feed",
-    "what every open-source control does",
-    laps: 1,
-    |setup, values| setup.member::<N, Uncorrected>(values)
+    "what every open-source control does"
 );
 
 /// Velocity, acceleration and friction feedforward with the exact model of the machine.
-pub static FEEDFORWARD: Entry = controller!(
+pub static FEEDFORWARD: Entry = member!(
+    Feedforward,
     Feedforward::<2>::ROW,
     "velocity, acceleration and friction feedforward with the exact model of the machine; makes slow corners of router worse",
-    "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
-    laps: 1,
-    |setup, values| setup.member::<N, Feedforward<N>>(values)
+    "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)"
 );
 
 /// Inversion of the identifier, speed along the path only.
-pub static MAGNITUDE_ONLY: Entry = controller!(
+pub static MAGNITUDE_ONLY: Entry = member!(
+    MagnitudeOnly,
     MagnitudeOnly::<2>::ROW,
     "inversion of the identifier, speed along the path only",
-    "Yoon and Jeon (2000)",
-    laps: 1,
-    |setup, values| setup.member::<N, MagnitudeOnly<N>>(values)
+    "Yoon and Jeon (2000)"
 );
 
 /// Inversion of the identifier, speed and geometry.
-pub static TWO_DIMENSIONAL: Entry = controller!(
+pub static TWO_DIMENSIONAL: Entry = member!(
+    TwoDimensional,
     TwoDimensional::<2>::ROW,
     "inversion of the identifier, speed and geometry",
-    "Lee, Cho and Jeon (2005)",
-    laps: 1,
-    |setup, values| setup.member::<N, TwoDimensional<N>>(values)
+    "Lee, Cho and Jeon (2005)"
 );
 
 /// Kalman filter and linear-quadratic regulator with preview, with an identified model of each
 /// axis.
-pub static LQG_IDENTIFIED: Entry = controller!(
+pub static LQG_IDENTIFIED: Entry = member!(
+    LqgIdentified,
     LqgIdentified::<2>::ROW,
     "Kalman filter and linear-quadratic regulator with preview, by an identified model of each axis",
-    "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)",
-    laps: 1,
-    |setup, values| setup.member::<N, LqgIdentified<N>>(values)
+    "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)"
 );
 
 /// The controllers that a machine runs.
@@ -243,46 +260,51 @@ impl Entry {
             .filter_map(|parameter| Some((parameter, parameter.searched?)))
     }
 
-    /// The controller of this row, with a model in place of a training.
+    /// The controller of this row for 2 or 3 axes, with a model in place of a training.
     ///
     /// # Errors
     /// A model that does not suit it.
-    pub fn make_with<'a, const N: usize>(
+    pub fn make_with<'a>(
         &self,
         mut setup: Setup<'a>,
+        axes: usize,
         model: &'a Model,
-    ) -> Result<Box<dyn Controller<N>>, ModelMisfit>
-    where
-        Self: Make<N>,
-    {
-        setup.take(model, self, N)?;
-        Ok(self.make(&mut setup))
+    ) -> Result<BoxedController, ModelMisfit> {
+        setup.take(model, self, axes)?;
+        Ok(self.make(&mut setup, axes))
     }
-}
 
-/// A number of axes that controllers exist for: 2 or 3.
-pub trait Make<const N: usize> {
-    /// The controller of this row.
-    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>>;
-}
-
-impl Make<2> for Entry {
-    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
+    /// The controller of this row for two axes.
+    pub fn in_plane(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
         if setup.is_unsuited(self) {
             return Box::new(Uncorrected);
         }
         let choices = setup.choices;
         (self.plane)(setup, &|parameter| choices.value(self, parameter))
     }
-}
 
-impl Make<3> for Entry {
-    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
+    /// The controller of this row for three axes.
+    pub fn in_space(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
         if setup.is_unsuited(self) {
             return Box::new(Uncorrected);
         }
         let choices = setup.choices;
         (self.space)(setup, &|parameter| choices.value(self, parameter))
+    }
+}
+
+/// Makes controllers of two and of three axes.
+pub trait Make {
+    /// A controller for 2 or 3 axes.
+    fn make(&self, setup: &mut Setup<'_>, axes: usize) -> BoxedController;
+}
+
+impl Make for Entry {
+    fn make(&self, setup: &mut Setup<'_>, axes: usize) -> BoxedController {
+        match axes {
+            2 => BoxedController::Plane(self.in_plane(setup)),
+            _ => BoxedController::Space(self.in_space(setup)),
+        }
     }
 }
 

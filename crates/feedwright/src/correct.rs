@@ -29,7 +29,6 @@
 //! | `workers.rs` | long work in parts, on threads, kept in a folder |
 //! | `source.rs` | the program with its text and modes |
 //! | `stretches.rs` | stretches without a corner, and the parts between them |
-//! | `arc_fit.rs` | fit of arcs and lines to points |
 //! | `learned.rs` | learning from logs of cuts of the part |
 //! | `exported.rs` | a program as the target control cuts it |
 //! | `seams.rs` | places where the commands of two pieces meet |
@@ -62,7 +61,6 @@ mod target;
 mod workers;
 mod source;
 mod stretches;
-pub(crate) mod arc_fit;
 pub(crate) mod learned;
 pub(crate) mod exported;
 mod seams;

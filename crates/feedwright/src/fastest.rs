@@ -29,15 +29,14 @@ mod path_share;
 
 use std::sync::Arc;
 
-use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Corner;
 use feedwright_plan::{Constraints, SpeedCaps, Step, Steps};
-use feedwright_sim::{Machine, Outcome, Run, RunError, Watch};
+use feedwright_sim::{BoxedController, Machine, Outcome, Run, RunError, Watch};
 use thiserror::Error;
 
-use crate::cycle_time::{CycleTime, cycle_time_within};
 use cut_places::CutPlaces;
+use feedwright_sim::cycle_time::{CycleTime, cycle_time_within};
 use path_grid::PathGrid;
 pub(crate) use path_share::{TolerancePlan, plan_within};
 use remaining_error::RemainingError;
@@ -128,11 +127,11 @@ pub enum FastestError {
 ///
 /// # Errors
 /// See [`FastestError`].
-pub fn fastest<'p, const N: usize>(
+pub fn fastest<'p>(
     machine: &Machine,
     tolerance_um: f64,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
-    controller: &mut dyn Controller<N>,
+    controller: &mut BoxedController,
     laps: u32,
     watch: &dyn Watch,
 ) -> Result<FastestPlan, FastestError> {
@@ -211,11 +210,11 @@ impl<'a> Search<'a> {
     }
 
     /// Plans within the current bounds, and cuts.
-    fn cut<'p, const N: usize>(
+    fn cut<'p>(
         &mut self,
         share: f64,
         steps: &mut impl FnMut() -> Result<Steps<'p>, ReadError>,
-        controller: &mut dyn Controller<N>,
+        controller: &mut BoxedController,
         laps: u32,
         watch: &dyn Watch,
     ) -> Result<CutPlaces, FastestError> {
@@ -230,8 +229,8 @@ impl<'a> Search<'a> {
             .capped(Some(&self.caps))
             .laps(laps)
             .watched(watch)
-            .cut(
-                || Ok(with_tolerance(steps()?, path_mm)),
+            .cut_boxed(
+                &mut || Ok(with_tolerance(steps()?, path_mm)),
                 controller,
                 &mut [&mut places],
             )?;

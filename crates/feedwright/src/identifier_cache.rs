@@ -5,8 +5,8 @@
 
 use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS, Parameters};
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, TrainedAxes,
-    TrainedContour, Training, train_axes, train_contour,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording,
+    TrainContour, TrainedAxes, TrainedContour, Training, train_axes,
 };
 use feedwright_sim::{Known, KnownAxis, Machine};
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,10 @@ pub fn identified<const N: usize>(
     training: &Training,
     seed: u64,
     progress: &mut dyn FnMut(f64),
-) -> TrainedContour<N> {
+) -> TrainedContour<N>
+where
+    Training: TrainContour<N>,
+{
     recorded_and_trained(machine, excitation, training, seed, progress).1
 }
 
@@ -52,14 +55,17 @@ pub(crate) fn recorded_and_trained<const N: usize>(
     training: &Training,
     seed: u64,
     progress: &mut dyn FnMut(f64),
-) -> (Recording<N>, TrainedContour<N>) {
+) -> (Recording<N>, TrainedContour<N>)
+where
+    Training: TrainContour<N>,
+{
     let (recording, rng) = excitation.record(machine, seed);
     let key = content_key(&(FORMAT, N, recording.hash(), excitation, seed, training));
     let found = key.as_deref().and_then(kept);
     if let Some(found) = found.and_then(StoredWeights::trained) {
         return (recording, found);
     }
-    let trained = train_contour(&recording, training, rng, progress);
+    let trained = training.train(&recording, rng, progress);
     if let Some(key) = key {
         keep(&key, &StoredWeights::of(&trained));
     }

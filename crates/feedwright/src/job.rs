@@ -48,15 +48,15 @@ use feedwright_ident::{LogFinding, Model};
 use feedwright_sim::{Machine, Sink, Watch};
 
 use crate::compensation::GeometryChoice;
-use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, UNCORRECTED};
+use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
-use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestPlan, TolerancePlan};
 pub use crate::job_error::JobError;
 use crate::measured::MeasuredLog;
 use crate::report::Report;
 use crate::report::harm::Harm;
 use crate::request::JobRequest;
+use feedwright_sim::cycle_time::CycleTimeOfCut;
 pub use guests::Guests;
 pub use read::CheckedJob;
 
@@ -187,10 +187,7 @@ impl CheckedJob<'_> {
     /// As [`CheckedJob::run`].
     pub fn tolerance_plan(&self, watch: &dyn Watch) -> Result<Option<TolerancePlan>, JobError> {
         let (job, _) = self.with_model(watch)?;
-        match self.axes {
-            2 => job.tolerance_plan::<2>(watch),
-            _ => job.tolerance_plan::<3>(watch),
-        }
+        job.tolerance_plan(self.axes, watch)
     }
 
     /// Cuts the program; the sinks receive the rows of the requested controller.
@@ -216,31 +213,15 @@ impl CheckedJob<'_> {
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<JobOutcome, JobError> {
-        match self.axes {
-            2 => self.stages::<2>(guests.plane, guests, rows, watch),
-            _ => self.stages::<3>(guests.space, guests, rows, watch),
-        }
-    }
-
-    fn stages<const N: usize>(
-        &self,
-        guest: Option<&dyn Make<N>>,
-        guests: Guests<'_>,
-        rows: &mut [&mut dyn Sink],
-        watch: &dyn Watch,
-    ) -> Result<JobOutcome, JobError>
-    where
-        Entry: Make<N>,
-    {
         let (job, undetermined) = self.with_model(watch)?;
-        let plan = job.plan::<N>(watch)?;
+        let plan = job.plan(self.axes, watch)?;
         let cycle = job.looks_at_cut(&plan);
         let cut = plan.cut(guests, cycle.as_ref().map(|cycle| cycle as _));
-        let mut cuts = job.cut_each::<N>(&self.summary, guest, cut, rows, watch)?;
-        let band = job.band::<N>(cut, cuts.completed(), watch)?;
+        let mut cuts = job.cut_each(self, guests.controller, cut, rows, watch)?;
+        let band = job.band(self.axes, cut, cuts.completed(), watch)?;
         let cycle = cycle.filter(|_| cuts.completed().is_some());
         let cycle = cycle.map(CycleTimeOfCut::finish);
-        let log_findings = job.insert_measured(&mut cuts.runs, N, &plan.circles, watch)?;
+        let log_findings = job.insert_measured(&mut cuts.runs, self.axes, &plan.circles, watch)?;
         let exported = job.push_exported(&mut cuts.runs, &plan.circles, watch)?;
         let limits = job.limit_band(&plan, cycle.as_ref(), watch)?;
         let report = Report {
@@ -248,7 +229,7 @@ impl CheckedJob<'_> {
             band,
             geometry: cuts.geometry,
             ..job.report(
-                N,
+                self.axes,
                 &self.summary,
                 plan.circles,
                 cuts.runs,

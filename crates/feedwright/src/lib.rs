@@ -82,9 +82,9 @@
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
 //! `output` writes files, `store` keeps finished work, `measured` compares a log with a cut,
-//! `cycle_time` and `fastest` look at plans, `controllers` is the table of controllers, `report`
-//! makes figures and the page, and `correct`, `job` and `log_job` are the jobs of the command line,
-//! and `linuxcnc_setup` wires a configuration of LinuxCNC.
+//! `fastest` looks at plans, `controllers` is the table of controllers, `report` makes figures and
+//! the page, `correct`, `job` and `log_job` are the jobs of the command line, and `linuxcnc_setup`
+//! wires a configuration of LinuxCNC.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -100,7 +100,6 @@ mod store;
 mod results_format;
 mod identifier_cache;
 mod measured;
-mod cycle_time;
 #[cfg(feature = "command")]
 mod override_time;
 mod fastest;
@@ -129,14 +128,15 @@ pub use controllers::{
     MAGNITUDE_ONLY, Make, ModelMisfit, Setting, Setup, TWO_DIMENSIONAL, UNCORRECTED,
 };
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
-pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{
     CorrectJob, CorrectOutcome, OverrideVerdict, PredictedCut, TARGETS, TargetControl,
     deterministic,
 };
-pub use cycle_time::{CycleTime, CycleTimeOptions, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, fastest};
+pub use feedwright_sim::cycle_time::{
+    CycleTime, CycleTimeOptions, cycle_time, cycle_time_by, cycle_time_within,
+};
 pub use identifier_cache::identified;
 pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome};
 #[cfg(feature = "files")]

@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use feedwright::{
-    BEST, CONTROLLERS, Choices, GeometryChoice, Guests, Job, JobError, JobRequest, Make, Setting,
-    Setup, TARGETS,
+    BEST, CONTROLLERS, Choices, GeometryChoice, Guests, Job, JobError, JobRequest, Setting, Setup,
+    TARGETS,
 };
 use feedwright_gcode::{Dialect, Increment, Program, Settings};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Mechanism, Plant, Row, Run, Watch, path_steps};
@@ -151,10 +151,10 @@ fn rows_are_read_back_to_the_bit() {
         Ok(path_steps(reader.map_while(Result::ok)))
     };
     let choices = Choices::default();
-    let mut controller = Make::<2>::make(
-        CONTROLLERS.find(BEST).unwrap(),
-        &mut Setup::new(&machine, &choices),
-    );
+    let mut controller = CONTROLLERS
+        .find(BEST)
+        .unwrap()
+        .in_plane(&mut Setup::new(&machine, &choices));
     let mut rows = Vec::<Row>::new();
     Run::on(&machine)
         .cut(program, &mut *controller, &mut [&mut rows])
@@ -273,7 +273,7 @@ fn guests_take_the_place_of_the_controller_that_is_asked_for_and_of_the_plant_of
     let (asked, feedforward) = (job("tnv40", BEST), job("tnv40", "feedforward"));
     let (theirs, of_theirs) = rows(&feedforward, Guests::default());
     let guests = Guests {
-        plane: Some(feedforward.controller),
+        controller: Some(feedforward.controller),
         ..Guests::default()
     };
     let (ours, of_ours) = rows(&asked, guests);

@@ -4,9 +4,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use feedwright::{
-    BASELINE, CONTROLLERS, Choices, Make, MeasuredError, Setup, Statistics, measured,
-};
+use feedwright::{BASELINE, CONTROLLERS, Choices, MeasuredError, Setup, Statistics, measured};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_ident::{Fitness, Log, LogAxis, LogFinding, LogFormat, TorqueUnit};
 use feedwright_sim::{Machine, Row, Run, RunResult, Stages, path_steps};
@@ -32,7 +30,7 @@ fn cut(name: &str) -> (Vec<Row>, Statistics, RunResult) {
     let machine = tnv40();
     let choices = Choices::default();
     let mut setup = Setup::new(&machine, &choices);
-    let mut controller = Make::<2>::make(CONTROLLERS.find(BASELINE).unwrap(), &mut setup);
+    let mut controller = CONTROLLERS.find(BASELINE).unwrap().in_plane(&mut setup);
     let (mut rows, mut statistics) = (Vec::new(), Statistics::new());
     let run = Run::on(&machine)
         .cut(
@@ -177,7 +175,7 @@ fn an_axis_that_stands_still_in_the_program_need_not_be_in_the_log() {
         };
         let choices = Choices::default();
         let mut setup = Setup::new(&machine, &choices);
-        let mut controller = Make::<2>::make(CONTROLLERS.find(BASELINE).unwrap(), &mut setup);
+        let mut controller = CONTROLLERS.find(BASELINE).unwrap().in_plane(&mut setup);
         let mut rows = Vec::new();
         Run::on(&machine)
             .cut(|| Ok(steps()), &mut *controller, &mut [&mut rows])

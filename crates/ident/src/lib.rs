@@ -36,7 +36,7 @@
 //! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`ModelVerdict`], [`SearchBound`] |
 //! | Simulated machine | [`Excitation`], [`Recording`] |
 //! | Axis with known drive settings | [`identify_axis`], [`AxisEstimate`], [`NotIdentified`] |
-//! | Models for controllers | [`train_axes`], [`train_contour`], [`axis_statistics`] |
+//! | Models for controllers | [`train_axes`], [`TrainContour`], [`axis_statistics`] |
 //! | Model files | [`Model`], [`Origin`], [`exact_block`] |
 //! | Geometry from measurements | [`GeometryInput`], [`fit_geometry`], [`FoundGeometry`], [`Circularity`], [`comp_file`] |
 //! | Geometry: programs, simulated bar | [`BallBarProgram`], [`GridProgram`], [`SimulatedBallBar`] |
@@ -91,7 +91,7 @@ pub use identify::Excitation;
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
 pub use identify::axis_parameters::{AxisEstimate, NotIdentified, identify_axis};
 pub use identify::axis_statistics::axis_statistics;
-pub use identify::contour::{TrainedContour, Training, train_contour};
+pub use identify::contour::{TrainContour, TrainedContour, Training};
 pub use identify::grey_box::axis_facts::AxisFacts;
 pub use identify::grey_box::found_axis::{FoundAxis, NumberSource};
 pub use identify::grey_box::free_run_scores::{FreeRunErrors, HORIZONS};

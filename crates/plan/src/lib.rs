@@ -37,6 +37,7 @@
 //! | Topic | Names |
 //! |---|---|
 //! | Path | [`Pieces`], [`Piece`], [`Curve`], [`Steps`], [`Step`], [`PathError`] |
+//! | Curves through points | [`ArcFit`], [`FitPoint`], [`FitMotion`] |
 //! | Planned path beside the programmed one | [`PlannedPiece`], [`AlignedPaths`] |
 //! | Limits | [`Constraints`], [`PathLimits`], [`AxisLimits`], [`SpeedCaps`], [`LimitsError`] |
 //! | Feed planners | [`FEED_PLANNERS`], [`FeedPlanner`], [`FeedMember`], [`feed_planner`], [`TimeOptimal`], [`Trapezoid`] |
@@ -92,6 +93,7 @@ pub use feed::{
 pub use paired::aligned::AlignedPaths;
 pub use paired::{PairedSteps, PlannedPiece, ProgrammedPart};
 pub use path::arc::Arc;
+pub use path::arc_fit::{ArcFit, FitMotion, FitPoint};
 pub use path::pieces::Pieces;
 pub use path::smooth::{Jet, Parametric, Smooth};
 pub use path::{Curve, MIN_FEED_MM_S, PathError, Piece, Point, Step, Steps, signed_distance_mm};

@@ -13,9 +13,11 @@
 //! | `contour.rs` | the closed-form contours of the benchmark |
 //! | `pieces.rs` | motions to pieces |
 //! | `arcs.rs` | an arc motion to arcs that meet both of its ends |
+//! | `arc_fit.rs` | fit of arcs and lines to points |
 
 pub(crate) mod arc;
 mod arcs;
+pub(crate) mod arc_fit;
 pub(crate) mod smooth;
 pub(crate) mod spline;
 pub(crate) mod line;

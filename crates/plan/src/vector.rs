@@ -12,6 +12,31 @@ pub fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     norm(sub(a, b))
 }
 
+/// Smooths points by a Gaussian of `sigma` samples; beyond its ends a sequence goes on as it ends.
+pub fn smoothed(points: &[Vector], sigma: f64) -> Vec<Vector> {
+    let reach = (3.0 * sigma).ceil() as isize;
+    if reach < 1 || points.is_empty() {
+        return points.to_vec();
+    }
+    let weights: Vec<f64> = (-reach..=reach)
+        .map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2)))
+        .collect();
+    let sum: f64 = weights.iter().sum();
+    let last = points.len() as isize - 1;
+    (0..=last)
+        .map(|n| {
+            let mut mean = [0.0; 3];
+            for (k, weight) in (-reach..=reach).zip(&weights) {
+                let point = points[(n + k).clamp(0, last) as usize];
+                for i in 0..3 {
+                    mean[i] += weight / sum * point[i];
+                }
+            }
+            mean
+        })
+        .collect()
+}
+
 /// Vector product.
 #[inline]
 pub(crate) fn cross(a: Vector, b: Vector) -> Vector {

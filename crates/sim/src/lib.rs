@@ -33,7 +33,7 @@
 //!
 //! | Topic | Names |
 //! |---|---|
-//! | Run | [`Run`], [`RunResult`], [`RunError`], [`Stages`], [`path_steps`] |
+//! | Run | [`Run`], [`RunResult`], [`RunError`], [`Stages`], [`path_steps`], [`BoxedController`] |
 //! | Rows | [`Sink`], [`Row`], [`Commanded`], [`Outcome`], [`FadedOut`], [`Transition`], [`CorrectionChange`] |
 //! | CSV | [`TraceWriter`], [`SetpointWriter`] |
 //! | Machine files | [`Machine`], [`Axis`], [`Limits`], [`Period`], [`Transmission`], [`Noise`], [`MachineError`] |
@@ -65,8 +65,9 @@
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
 //! `machine` reads machine files, `geometry_file` measured geometry, `reference` looks the plan up
-//! by time, `plant` is the simulated machine, `row` has the rows and `trace` writes them, `simulate` closes the loop,
-//! and `pipeline` joins all stages.
+//! by time, `plant` is the simulated machine, `row` has the rows and `trace` writes them, `simulate`
+//! closes the loop, `boxed_controller` holds a controller of two or three axes, `pipeline` joins all
+//! stages, and `cycle_time` looks at a plan.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -83,8 +84,11 @@ mod plant;
 mod row;
 mod trace;
 mod simulate;
+mod boxed_controller;
 mod pipeline;
+pub mod cycle_time;
 
+pub use boxed_controller::BoxedController;
 pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused};
 pub use geometry_file::least_squares::{RankedLeastSquares, f_exceeded};
 pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};

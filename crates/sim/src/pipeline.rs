@@ -18,6 +18,7 @@ use feedwright_plan::{
 };
 use thiserror::Error;
 
+use crate::boxed_controller::BoxedController;
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::row::Sink;
@@ -300,6 +301,42 @@ impl<'a> Run<'a> {
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
         self.laps_of(|| steps().map(LapPaths::One), controller, sinks)
+    }
+
+    /// Cuts as [`Run::cut`] does, with a controller of two or three axes.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn cut_boxed<'p>(
+        &self,
+        steps: &mut dyn FnMut() -> Result<Steps<'p>, ReadError>,
+        controller: &mut BoxedController,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        match controller {
+            BoxedController::Plane(controller) => self.cut(steps, &mut **controller, sinks),
+            BoxedController::Space(controller) => self.cut(steps, &mut **controller, sinks),
+        }
+    }
+
+    /// Cuts as [`Run::cut_aligned`] does, with a controller of two or three axes.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn cut_boxed_aligned(
+        &self,
+        aligned: &AlignedPaths,
+        controller: &mut BoxedController,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        match controller {
+            BoxedController::Plane(controller) => {
+                self.cut_aligned(aligned, &mut **controller, sinks)
+            }
+            BoxedController::Space(controller) => {
+                self.cut_aligned(aligned, &mut **controller, sinks)
+            }
+        }
     }
 
     /// All laps, each along paths of its own.

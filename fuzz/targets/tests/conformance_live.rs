@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright::{CONTROLLERS, Choices, Make, Setup, TWO_DIMENSIONAL};
+use feedwright::{CONTROLLERS, Choices, Setup, TWO_DIMENSIONAL};
 use feedwright_control::{
     AnyController, Bounds, Command, Controller, ControllerRow, IdentifiedAxes, IdentifierKind,
     Knot, KnotSource, Knows, Measured, MemberName, OffsetBounds, Part, Schedule, SelfReport, Tick,
@@ -13,7 +13,7 @@ use feedwright_control::{
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes};
 use feedwright_servo::machine::{live_controller, model_of};
-use feedwright_sim::{Machine, Plant};
+use feedwright_sim::{BoxedController, Machine, Plant};
 
 /// Servo periods that are compared: three turns of the circle.
 const PERIODS: u32 = 3000;
@@ -140,8 +140,11 @@ fn corrections(
     live.hold_to(setup.offset_bounds());
     let entry = CONTROLLERS.find(row.name).unwrap();
     let run = match row.identifier {
-        Some(_) => entry.make_with(setup, model).unwrap(),
-        None => Make::<2>::make(entry, &mut setup),
+        Some(_) => match entry.make_with(setup, 2, model).unwrap() {
+            BoxedController::Plane(controller) => controller,
+            BoxedController::Space(_) => unreachable!("two axes"),
+        },
+        None => entry.in_plane(&mut setup),
     };
     let corrections = 0;
     let mut both = Both {

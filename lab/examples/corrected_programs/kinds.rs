@@ -14,8 +14,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use feedwright::{ArcFit, FitPoint};
 use feedwright_gcode::canon::Shape;
+use feedwright_plan::{ArcFit, FitPoint};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -1,5 +1,5 @@
 //! A competitor: a controller, and its knowledge of the machine that it cuts on.
-use feedwright::{Choices, Entry, Make, Setup, recorded_machine};
+use feedwright::{Choices, Entry, Setup, recorded_machine};
 use feedwright_control::{Controller, IdentifierKind, Knows, Uncorrected};
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
@@ -159,7 +159,7 @@ impl Competitor {
             }
             Knowledge::Own | Knowledge::Identified | Knowledge::Unseen | Knowledge::Log => {}
         }
-        Make::<2>::make(self.entry, &mut setup)
+        self.entry.in_plane(&mut setup)
     }
 }
 

@@ -4,7 +4,7 @@
 //! The seeds are kept with the date of the draw and a fingerprint of all settings that can be
 //! tuned: defaults, searched ranges, and the recorded values. If a setting has changed since, the
 //! work is no longer held out, and a test demands new seeds.
-use feedwright::{Choices, Make, Setup, UNCORRECTED};
+use feedwright::{Choices, Setup, UNCORRECTED};
 use feedwright_sim::{Machine, Outcome, Run, RunError};
 use serde::{Deserialize, Serialize};
 
@@ -108,7 +108,7 @@ fn suits(drawn: &programs::RandomProgram) -> Result<bool, RunError> {
     };
     let machine = Machine::load(MACHINE.as_ref()).expect("it is built in");
     let choices = Choices::default();
-    let mut controller = Make::<2>::make(&UNCORRECTED, &mut Setup::new(&machine, &choices));
+    let mut controller = UNCORRECTED.in_plane(&mut Setup::new(&machine, &choices));
     let run = Run::on(&machine).cut_steps(&steps, &mut *controller, &mut [])?;
     Ok(run.outcome == Outcome::Completed && (TIME_S[0]..=TIME_S[1]).contains(&run.time_s))
 }

@@ -10,7 +10,7 @@
 //! uncorrected cut costs as much as ten percent of error.
 //!
 //! The search uses the noise seed of the machine file. No reported cut of a noisy machine uses it.
-use feedwright::{Choices, Entry, Make, Setting, Setup, UNCORRECTED};
+use feedwright::{Choices, Entry, Setting, Setup, UNCORRECTED};
 use feedwright_control::Parameter;
 use feedwright_ident::quadratic_mean;
 use feedwright_sim::{Machine, PlanCache, Run, RunError, Watch};
@@ -167,7 +167,7 @@ impl Trial<'_> {
             set: settings.to_vec(),
             ..Choices::default()
         };
-        let mut controller = Make::<2>::make(self.entry, &mut Setup::new(self.machine, &choices));
+        let mut controller = self.entry.in_plane(&mut Setup::new(self.machine, &choices));
         let run = Run::on(self.machine)
             .laps(self.entry.laps)
             .watched(self.watch);

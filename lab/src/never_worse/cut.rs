@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use feedwright::CutErrors;
 use feedwright::{BASELINE, Choices, Entry, Make, Setup, Statistics, UNCORRECTED};
-use feedwright_control::Controller;
 use feedwright_sim::{
-    Cancelled, Commanded, Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, Watch,
+    BoxedController, Cancelled, Commanded, Machine, Outcome, PlanCache, Row, Run, RunError,
+    RunResult, Sink, Watch,
 };
 use serde::{Deserialize, Serialize};
 
@@ -149,17 +149,14 @@ impl Sink for LaterError {
     }
 }
 
-/// Controllers of a number of axes, each made where it is needed.
-type Made<const N: usize> = Vec<Option<Box<dyn Controller<N>>>>;
-
 /// Cuts with controllers that were made for one machine, and uncorrected.
 pub struct Cutter {
     model: Arc<Machine>,
     choices: Choices,
     /// Uncorrected first.
     entries: Vec<&'static Entry>,
-    plane: Made<2>,
-    space: Made<3>,
+    /// Controllers of two and of three axes, each made where it is needed.
+    made: [Vec<Option<BoxedController>>; 2],
 }
 
 impl Cutter {
@@ -174,8 +171,7 @@ impl Cutter {
         Self {
             model: model.clone(),
             choices,
-            plane: entries.iter().map(|_| None).collect(),
-            space: entries.iter().map(|_| None).collect(),
+            made: [2, 3].map(|_: usize| entries.iter().map(|_| None).collect()),
             entries,
         }
     }
@@ -194,11 +190,11 @@ impl Cutter {
     ) -> Result<Figures, Cancelled> {
         let mut setup = Setup::new(&self.model, &self.choices);
         let entry = self.entries[way];
-        match program.axes {
-            2 => once(&mut self.plane[way], entry, &mut setup, program, run),
-            _ if self.model.axis_count() < 3 => Ok(Figures::failed("the machine has no Z")),
-            _ => once(&mut self.space[way], entry, &mut setup, program, run),
+        if program.axes > self.model.axis_count() {
+            return Ok(Figures::failed("the machine has no Z"));
         }
+        let made = &mut self.made[program.axes - 2][way];
+        once(made, entry, &mut setup, program, run)
     }
 
     /// Cuts a program on a machine uncorrected and with every controller: a row for each.
@@ -236,18 +232,15 @@ impl Cutter {
 }
 
 /// Cuts a program once with a controller. Makes the controller first where needed.
-fn once<const N: usize>(
-    made: &mut Option<Box<dyn Controller<N>>>,
+fn once(
+    made: &mut Option<BoxedController>,
     entry: &Entry,
     setup: &mut Setup<'_>,
     program: &SweepProgram,
     (run, servo_s): (Run<'_>, f64),
-) -> Result<Figures, Cancelled>
-where
-    Entry: Make<N>,
-{
+) -> Result<Figures, Cancelled> {
     let done = catch_unwind(AssertUnwindSafe(|| {
-        let controller = made.get_or_insert_with(|| Make::make(entry, setup));
+        let controller = made.get_or_insert_with(|| entry.make(setup, program.axes));
         let mut statistics = Statistics::new();
         let mut later = LaterError {
             servo_s,
@@ -255,7 +248,8 @@ where
         };
         let sinks: &mut [&mut dyn Sink] = &mut [&mut statistics, &mut later];
         let run = run.laps(entry.laps);
-        match run.cut_steps(&program.steps, &mut **controller, sinks) {
+        let mut steps = || Ok(Box::new(program.steps.iter().cloned().map(Ok)) as _);
+        match run.cut_boxed(&mut steps, controller, sinks) {
             Ok(run) => Ok(Figures {
                 later_rms_um: later.rms_um(),
                 ..Figures::of(&run, &statistics, entry)

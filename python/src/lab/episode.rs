@@ -15,7 +15,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use feedwright::control::{Command, Controller, Measured, Schedule, Window};
-use feedwright::sim::{Known, Row, Sink, Watch};
+use feedwright::sim::{BoxedController, Known, Row, Sink, Watch};
 use feedwright::{Guests, Make, Setup};
 use miette::{Report, miette};
 use pyo3::prelude::*;
@@ -112,11 +112,12 @@ impl<const N: usize> Controller<N> for Waiting {
 /// Hands the controller over once, since there is one cut.
 struct Once(RefCell<Option<Waiting>>);
 
-impl<const N: usize> Make<N> for Once {
-    fn make(&self, _: &mut Setup<'_>) -> Box<dyn Controller<N>> {
-        match self.0.take() {
-            Some(waiting) => Box::new(waiting),
-            None => Box::new(feedwright::control::Uncorrected),
+impl Make for Once {
+    fn make(&self, _: &mut Setup<'_>, axes: usize) -> BoxedController {
+        match (self.0.take(), axes) {
+            (Some(waiting), 2) => BoxedController::Plane(Box::new(waiting)),
+            (Some(waiting), _) => BoxedController::Space(Box::new(waiting)),
+            (None, axes) => BoxedController::uncorrected(axes),
         }
     }
 }
@@ -162,8 +163,7 @@ impl EpisodeWork {
         });
         let plant = plant.as_ref().map(|plant| plant as _);
         let guests = Guests {
-            plane: Some(&once),
-            space: Some(&once),
+            controller: Some(&once),
             plant,
             ..Guests::default()
         };

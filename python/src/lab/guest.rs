@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use feedwright::control::{Command, Controller, Measured, PREVIEW_KNOTS, Schedule, Window};
-use feedwright::sim::{Machine, Measurement, Mechanism, Plant};
+use feedwright::sim::{BoxedController, Machine, Measurement, Mechanism, Plant};
 use feedwright::{Make, Setup};
 use miette::miette;
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
@@ -134,9 +134,12 @@ impl<const N: usize> Controller<N> for PythonController {
     }
 }
 
-impl<const N: usize> Make<N> for PythonController {
-    fn make(&self, _: &mut Setup<'_>) -> Box<dyn Controller<N>> {
-        Box::new(self.clone())
+impl Make for PythonController {
+    fn make(&self, _: &mut Setup<'_>, axes: usize) -> BoxedController {
+        match axes {
+            2 => BoxedController::Plane(Box::new(self.clone())),
+            _ => BoxedController::Space(Box::new(self.clone())),
+        }
     }
 }
 

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use feedwright::command::find;
-use feedwright::control::{Controller, ControllerRow, Knows, Parameters};
-use feedwright::sim::{Known, Machine};
+use feedwright::control::{ControllerRow, Knows, Parameters};
+use feedwright::sim::{BoxedController, Known, Machine};
 use feedwright::{
     Choices, Controllers, Entry, Job, JobOutcome, JobRequest, Make, Setup, UNCORRECTED,
 };
@@ -91,15 +91,12 @@ pub(super) struct Informed<'a> {
     known: Known,
 }
 
-impl<const N: usize> Make<N> for Informed<'_>
-where
-    Entry: Make<N>,
-{
+impl Make for Informed<'_> {
     /// Makes the controller. Its recordings have the noise of the machine file, as in `identified`.
-    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
+    fn make(&self, setup: &mut Setup<'_>, axes: usize) -> BoxedController {
         let mut reported = Setup::new(&self.task.machine, setup.choices);
         reported.known.clone_from(&self.known);
-        self.task.made.make(&mut reported)
+        self.task.made.make(&mut reported, axes)
     }
 }
 

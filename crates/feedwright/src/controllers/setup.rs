@@ -5,11 +5,11 @@
 //! machine.
 use feedwright_control::{
     AxisModel, Controller, ControllerData, ControllerRow, INVERSION_PERIOD_S, IdentifierKind,
-    Knows, Member, OffsetBounds, Part, RESPONSES_S, Trained, TrainedModel, Uncorrected, Values,
+    Knows, OffsetBounds, Part, RESPONSES_S, Trained, TrainedModel, Uncorrected, Values,
 };
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, TrainedAxes,
-    TrainedContour, Training, an_identifier, identify_axis,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording,
+    TrainContour, TrainedAxes, TrainedContour, Training, an_identifier, identify_axis,
 };
 use feedwright_sim::{Known, KnownAxis, Machine};
 use miette::Diagnostic;
@@ -355,26 +355,28 @@ impl<'a> Setup<'a> {
         Ok(())
     }
 
-    /// Makes a controller of the family. It is uncorrected where the machine does not move so that
-    /// its axes show, see [`Self::found`].
-    pub fn member<const N: usize, M: Member<N> + 'static>(
+    /// Makes a controller of the family by what is known of the machine. It is uncorrected where the
+    /// machine does not move so that its axes show, see [`Self::found`].
+    pub(super) fn member<const N: usize>(
         &mut self,
+        row: &ControllerRow,
         values: Values<'_>,
-    ) -> Box<dyn Controller<N>> {
-        let model = self.model_for::<N>(&M::ROW, values);
-        let is_exact = M::ROW.knows == Knows::ExactModel;
+        make: impl FnOnce(&ControllerData<'_, N>) -> Option<Box<dyn Controller<N>>>,
+    ) -> Box<dyn Controller<N>>
+    where
+        Training: TrainContour<N>,
+    {
+        let model = self.model_for::<N>(row, values);
+        let is_exact = row.knows == Knows::ExactModel;
         let inverse = is_exact.then(|| self.known.inverse());
-        let data = ControllerData {
+        let made = make(&ControllerData {
             model: model.as_ref(),
             inverse: inverse.as_ref(),
             bounds: self.offset_bounds(),
             tries: self.choices.tries,
             is_known: true,
-        };
-        match M::make(&data, values) {
-            Some(controller) => Box::new(controller),
-            None => Box::new(Uncorrected),
-        }
+        });
+        made.unwrap_or_else(|| Box::new(Uncorrected))
     }
 
     /// Returns the bounds that the supervisor applies to an offset.
@@ -392,7 +394,10 @@ impl<'a> Setup<'a> {
         &mut self,
         row: &ControllerRow,
         values: Values<'_>,
-    ) -> Option<TrainedModel<N>> {
+    ) -> Option<TrainedModel<N>>
+    where
+        Training: TrainContour<N>,
+    {
         let kind = row.identifier?;
         if let Some(model) = self.model {
             return model.control();
@@ -458,7 +463,10 @@ impl<'a> Setup<'a> {
     fn train_contour<const N: usize>(
         &mut self,
         feed_period_s: f64,
-    ) -> (Recording<N>, TrainedContour<N>) {
+    ) -> (Recording<N>, TrainedContour<N>)
+    where
+        Training: TrainContour<N>,
+    {
         let excitation = Excitation {
             feed_period_s,
             ..Excitation::general()
@@ -500,7 +508,10 @@ impl<'a> Setup<'a> {
         &mut self,
         entry: &Entry,
         date: String,
-    ) -> Result<Model, ModelMisfit> {
+    ) -> Result<Model, ModelMisfit>
+    where
+        Training: TrainContour<N>,
+    {
         let kind = entry.identifier.ok_or_else(|| entry.no_identifier())?;
         let feed_period_s = entry.feed_period_s(&self.known, self.choices);
         let seed = self.choices.seed;
@@ -611,7 +622,7 @@ mod tests {
         );
         let mut setup = Setup::new(&machine, &choices);
         assert_eq!(setup.remark(entry), None);
-        let _ = super::super::Make::<2>::make(entry, &mut setup);
+        let _ = entry.in_plane(&mut setup);
         let reported = setup.remark(entry).unwrap().to_string();
         assert!(
             reported.starts_with("lqg-identified cuts uncorrected: the axes of `tnv40` cannot"),

@@ -222,10 +222,7 @@ impl AdviseJob {
             machine,
             ..self.clone()
         };
-        let found = match axes {
-            2 => job.of_axes::<2>(&source, file.as_ref(), watch),
-            _ => job.of_axes::<3>(&source, file.as_ref(), watch),
-        };
+        let found = job.of_axes(axes, &source, file.as_ref(), watch);
         Ok(Advice {
             warnings,
             assumed: file.map(|file| file.assumption),
@@ -233,15 +230,13 @@ impl AdviseJob {
         })
     }
 
-    fn of_axes<const N: usize>(
+    fn of_axes(
         &self,
+        axes: usize,
         source: &SourceProgram,
         file: Option<&FileModel>,
         watch: &dyn Watch,
-    ) -> Result<Advice, JobError>
-    where
-        Entry: Make<N>,
-    {
+    ) -> Result<Advice, JobError> {
         let parts = parts(&source.steps, &[]);
         let feeds: Vec<f64> = stretches(&parts).map(feed_mm_s).collect();
         let largest_mm_s = feeds.iter().copied().fold(0.0, f64::max);
@@ -254,8 +249,8 @@ impl AdviseJob {
             (self.controller.identifier.is_some()).then(|| identifying(&self.machine, watch));
         let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
         let mut setup = Setup::new(&self.machine, &self.choices).reporting(&mut progress);
-        let controller = Make::<N>::make(self.controller, &mut setup);
-        let mut bench = FeedBench::<N> {
+        let controller = self.controller.make(&mut setup, axes);
+        let mut bench = FeedBench {
             machine: &self.machine,
             file,
             target: self.target,

@@ -13,9 +13,9 @@
 
 use std::ops::Range;
 
-use feedwright_plan::vector::{Vector, add_scaled, distance, norm, sub};
+use feedwright_plan::FitPoint;
+use feedwright_plan::vector::{Vector, add_scaled, distance, norm, smoothed, sub};
 
-use super::arc_fit::FitPoint;
 use super::exported::CutRow;
 use super::loop_lag::LoopLag;
 use super::slow_end::SlowEnd;
@@ -36,31 +36,6 @@ pub(super) struct UpdateSettings {
     pub(super) most_mm: f64,
     /// Servo period, s.
     pub(super) servo_s: f64,
-}
-
-/// Smooths by a Gaussian of `sigma` samples; beyond its ends a sequence goes on as it ends.
-fn smoothed(values: &[Vector], sigma: f64) -> Vec<Vector> {
-    let reach = (3.0 * sigma).ceil() as isize;
-    if reach < 1 || values.is_empty() {
-        return values.to_vec();
-    }
-    let weights: Vec<f64> = (-reach..=reach)
-        .map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2)))
-        .collect();
-    let sum: f64 = weights.iter().sum();
-    let last = values.len() as isize - 1;
-    (0..=last)
-        .map(|n| {
-            let mut mean = [0.0; 3];
-            for (k, weight) in (-reach..=reach).zip(&weights) {
-                let value = values[(n + k).clamp(0, last) as usize];
-                for i in 0..3 {
-                    mean[i] += weight / sum * value[i];
-                }
-            }
-            mean
-        })
-        .collect()
 }
 
 /// Smooths a sequence between two ends that stay where they are: beyond them it is mirrored at the

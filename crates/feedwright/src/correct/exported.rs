@@ -6,13 +6,12 @@
 //! period of the disturbance, and has another seed.
 use std::ops::Range;
 
-use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, add_scaled, sub};
 use feedwright_plan::{AlignedPaths, Step};
 use feedwright_sim::{
-    Commanded, Machine, Measurement, Mechanism, Outcome, PlanCache, Plant, PlantMaker, Row, Run,
-    RunError, RunResult, Sink, Stages, Watch,
+    BoxedController, Commanded, Machine, Measurement, Mechanism, Outcome, PlanCache, Plant,
+    PlantMaker, Row, Run, RunError, RunResult, Sink, Stages, Watch,
 };
 use serde::{Deserialize, Serialize};
 
@@ -469,10 +468,7 @@ impl ExportedCut<'_> {
             run
         };
         let run = plant.map_or(run, |plant| run.plant(plant));
-        match self.axes {
-            2 => run.cut_aligned::<2>(aligned, &mut Uncorrected, sinks),
-            _ => run.cut_aligned::<3>(aligned, &mut Uncorrected, sinks),
-        }
+        run.cut_boxed_aligned(aligned, &mut BoxedController::uncorrected(self.axes), sinks)
     }
 
     /// The command of a program, servo period by servo period.

@@ -13,7 +13,6 @@ use feedwright_plan::{PathError, Pieces, Step};
 use feedwright_sim::{Machine, RunError, StageSteps};
 use serde::{Deserialize, Serialize};
 
-use super::arc_fit::FitMotion;
 use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s};
 use super::command_update::{UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut, check_rows};
@@ -29,6 +28,7 @@ use super::stretches::{
 };
 use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
+use feedwright_plan::FitMotion;
 
 /// Largest number of cuts.
 const ROUNDS: u32 = 12;

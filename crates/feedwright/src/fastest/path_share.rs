@@ -1,10 +1,9 @@
 //! The part of the tool's tolerance that the planned path may use: the remainder that the machine
 //! does not need.
 
-use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
 use feedwright_plan::Steps;
-use feedwright_sim::{Machine, Watch};
+use feedwright_sim::{BoxedController, Machine, Watch};
 
 use super::path_grid::PathGrid;
 use super::{FIRST_SHARE, FastestError, SPACING_MM, Search};
@@ -36,11 +35,11 @@ pub struct TolerancePlan {
 ///
 /// # Errors
 /// A run that does not come to its end.
-pub(crate) fn plan_within<'p, const N: usize>(
+pub(crate) fn plan_within<'p>(
     machine: &Machine,
     tolerance_um: f64,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
-    controller: &mut dyn Controller<N>,
+    controller: &mut BoxedController,
     laps: u32,
     watch: &dyn Watch,
 ) -> Result<Option<TolerancePlan>, FastestError> {

@@ -7,7 +7,6 @@ use feedwright_sim::{Axis, Machine, Outcome, Row, RunError, Sink, Watch, map_in_
 
 use super::cuts::PlannedCut;
 use super::{Job, JobError};
-use crate::controllers::{Entry, Make};
 use crate::report::{Band, BandErrors, RunSummary, Statistics};
 
 /// Machining time that a band covers at the most, s: of a longer cut only the beginning.
@@ -20,15 +19,13 @@ type CutOfOne = Option<([f64; 2], Option<[f64; 2]>)>;
 impl Job {
     /// The band of a cut; `None` where no machines are given for it, or the cut did not come to its
     /// end.
-    pub(super) fn band<const N: usize>(
+    pub(super) fn band(
         &self,
+        axes: usize,
         plan: PlannedCut<'_>,
         completed: Option<&RunSummary>,
         watch: &dyn Watch,
-    ) -> Result<Option<Band>, JobError>
-    where
-        Entry: Make<N>,
-    {
+    ) -> Result<Option<Band>, JobError> {
         let Some(cut) = completed.filter(|_| !self.fitting.is_empty()) else {
             return Ok(None);
         };
@@ -39,7 +36,7 @@ impl Job {
         let first_s = (cut.time_s > MOST_S).then_some(MOST_S);
         let cut = |(i, fitting): (usize, &Machine)| {
             let machine = on_job(plan.machine, fitting, i as u64 + 1);
-            let cut = self.cut_on::<N>(&machine, plan, first_s, watch);
+            let cut = self.cut_on(axes, (&machine, plan), first_s, watch);
             watch.advance(1);
             cut
         };
@@ -67,19 +64,16 @@ impl Job {
     }
 
     /// Cuts on one machine, to the end or only the beginning.
-    fn cut_on<const N: usize>(
+    fn cut_on(
         &self,
-        machine: &Machine,
-        plan: PlannedCut<'_>,
+        axes: usize,
+        (machine, plan): (&Machine, PlannedCut<'_>),
         first_s: Option<f64>,
         watch: &dyn Watch,
-    ) -> Result<CutOfOne, JobError>
-    where
-        Entry: Make<N>,
-    {
+    ) -> Result<CutOfOne, JobError> {
         // The design of a controller does not end early.
         watch.check()?;
-        let mut controller = self.own_controller::<N>()?;
+        let mut controller = self.own_controller(axes)?;
         let cancels = CancelsOnly(watch);
         let mut beginning = Beginning {
             statistics: Statistics::new(),
@@ -93,7 +87,7 @@ impl Job {
         let joints = match self.cut_planned(
             plan,
             self.controller,
-            &mut *controller,
+            &mut controller,
             &mut [&mut beginning],
             &cancels,
         ) {

@@ -2,18 +2,19 @@
 
 use std::sync::Arc;
 
-use feedwright_control::{Controller, IdentifiedAxes};
+use feedwright_control::IdentifiedAxes;
 use feedwright_gcode::Summary;
 use feedwright_ident::{Model, Origin};
 use feedwright_plan::{AlignedPaths, PlanSink, SpeedCaps};
 use feedwright_sim::{
-    Machine, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Watch, path_steps,
+    BoxedController, Machine, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Watch,
+    path_steps,
 };
 
 use super::guests::{Guests, SharedPlantMaker};
 use super::planned::{JobPlan, with_feeds};
 use super::record::{RunRecord, Timeline};
-use super::{Job, JobError};
+use super::{CheckedJob, Job, JobError};
 use crate::controllers::{CutsUncorrected, Entry, Make, Setup, identifying};
 use crate::fastest::with_tolerance;
 use crate::report::{CompensatedGeometry, FullCircle, Outcome, ReportedRun, Role, RunSummary};
@@ -110,17 +111,16 @@ impl Job {
     }
 
     /// One run for each controller.
-    pub(super) fn cut_each<const N: usize>(
+    pub(super) fn cut_each(
         &self,
-        summary: &Summary,
-        guest: Option<&dyn Make<N>>,
+        checked: &CheckedJob<'_>,
+        guest: Option<&dyn Make>,
         plan: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
-    ) -> Result<Cuts, JobError>
-    where
-        Entry: Make<N>,
-    {
+    ) -> Result<Cuts, JobError> {
+        let CheckedJob { axes, summary, .. } = checked;
+        let axes = *axes;
         let mut cuts = Cuts::default();
         for entry in self.controllers() {
             watch.check()?;
@@ -131,10 +131,10 @@ impl Job {
             let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
             let mut setup = Setup::new(&self.machine, &self.choices).reporting(&mut progress);
             let mut controller = match (guest.filter(|_| judged), model) {
-                (Some(guest), _) => guest.make(&mut setup),
-                (None, Some(model)) => entry.make_with::<N>(setup, model)?,
+                (Some(guest), _) => guest.make(&mut setup, axes),
+                (None, Some(model)) => entry.make_with(setup, axes, model)?,
                 (None, None) => {
-                    let controller = Make::<N>::make(entry, &mut setup);
+                    let controller = entry.make(&mut setup, axes);
                     cuts.without_identification.extend(setup.remark(entry));
                     controller
                 }
@@ -160,7 +160,7 @@ impl Job {
             cuts.runs.push(self.cut_once(
                 summary,
                 entry,
-                &mut *controller,
+                &mut controller,
                 plan,
                 &mut sinks,
                 watch,
@@ -168,7 +168,7 @@ impl Job {
             cuts.geometry = self.compensation.reported(&self.machine, &spread);
             let given = self.model.as_ref().filter(|_| judged);
             if let Some(model) = given.filter(|_| self.request.learns) {
-                cuts.learned = self.learned(model, &*controller);
+                cuts.learned = self.learned(model, &controller);
             }
         }
         Ok(cuts)
@@ -184,36 +184,43 @@ impl Job {
     }
 
     /// A model with the axes as a controller knows them now; `None` of one that does not learn.
-    fn learned<const N: usize>(
-        &self,
-        model: &Model,
-        controller: &dyn Controller<N>,
-    ) -> Option<Model> {
-        let axes = IdentifiedAxes {
-            periods: self.machine.period.periods(),
-            axes: controller.known()?.map(|axis| axis.parameters),
-        };
+    fn learned(&self, model: &Model, controller: &BoxedController) -> Option<Model> {
         let (given, part) = (&model.about().source, self.program.file_name());
         let source = format!("{given}; learned while {} cut {part}", self.machine.name);
-        model.with_axes(
-            axes,
-            Origin {
-                source,
-                date: self.today.clone(),
-            },
-        )
+        let origin = Origin {
+            source,
+            date: self.today.clone(),
+        };
+        let periods = self.machine.period.periods();
+        match controller {
+            BoxedController::Plane(controller) => model.with_axes(
+                IdentifiedAxes {
+                    periods,
+                    axes: controller.known()?.map(|axis| axis.parameters),
+                },
+                origin,
+            ),
+            BoxedController::Space(controller) => model.with_axes(
+                IdentifiedAxes {
+                    periods,
+                    axes: controller.known()?.map(|axis| axis.parameters),
+                },
+                origin,
+            ),
+        }
     }
 
-    fn cut_once<const N: usize>(
+    fn cut_once(
         &self,
         summary: &Summary,
         entry: &Entry,
-        controller: &mut dyn Controller<N>,
+        controller: &mut BoxedController,
         plan: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
-        let mut record = RunRecord::new(N, self.machine.period.servo_s, plan.circles);
+        let mut record =
+            RunRecord::new(controller.axes(), self.machine.period.servo_s, plan.circles);
         let mut timeline = Timeline::new(&self.machine.plc_events);
         let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
         let mut cut = CutProgress {
@@ -236,7 +243,7 @@ impl Job {
     }
 
     /// Cuts the program on the machine of a plan.
-    pub(super) fn cut_planned<const N: usize>(
+    pub(super) fn cut_planned(
         &self,
         PlannedCut {
             machine,
@@ -250,11 +257,11 @@ impl Job {
             ..
         }: PlannedCut<'_>,
         entry: &Entry,
-        controller: &mut dyn Controller<N>,
+        controller: &mut BoxedController,
         sinks: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
-        let steps = || {
+        let mut steps = || {
             let steps = path_steps(with_feeds(
                 self.steps()?,
                 feeds_mm_s.unwrap_or_default().iter().copied(),
@@ -277,8 +284,8 @@ impl Job {
             .watched(watch)
             .planned_to(looked_at);
         match aligned {
-            Some(aligned) => run.cut_aligned(aligned, controller, sinks),
-            None => run.cut(steps, controller, sinks),
+            Some(aligned) => run.cut_boxed_aligned(aligned, controller, sinks),
+            None => run.cut_boxed(&mut steps, controller, sinks),
         }
     }
 }

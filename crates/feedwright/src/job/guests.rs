@@ -13,10 +13,8 @@ pub(super) type SharedPlantMaker<'a> = &'a (dyn Fn([f64; 3], u64) -> Box<dyn Mec
 /// controller.
 #[derive(Clone, Copy, Default)]
 pub struct Guests<'a> {
-    /// Makes the requested controller where two axes are controlled.
-    pub plane: Option<&'a dyn Make<2>>,
-    /// The same where three axes are.
-    pub space: Option<&'a dyn Make<3>>,
+    /// Makes the requested controller.
+    pub controller: Option<&'a dyn Make>,
     /// Feedrates of the motions of the program in its order, mm/s, in the cut of the requested
     /// controller: a planner's. Feedrates of rapids are not used. A motion without one keeps its
     /// own. The limits of the machine hold as always.

@@ -1,13 +1,12 @@
 //! The plan that all cuts of a job share: the machine with its limits, the paths and the circles.
 
-use feedwright_control::Controller;
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{Program, ReadError};
 use feedwright_plan::{AlignedPaths, Constraints, Step, Steps};
-use feedwright_sim::{Machine, PlanCache, Stages, Watch, path_steps};
+use feedwright_sim::{BoxedController, Machine, PlanCache, Stages, Watch, path_steps};
 
 use super::{Job, JobError};
-use crate::controllers::{Entry, Make, Setup};
+use crate::controllers::{Make, Setup};
 use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 use crate::report::{FullCircle, full_circles};
 
@@ -52,24 +51,21 @@ pub(super) fn with_feeds(
 type ProgramSteps<'s> = Box<dyn FnMut() -> Result<Steps<'s>, ReadError> + 's>;
 
 /// Search for a plan: machine, tolerance in um, path, controller and its laps.
-type PlanSearch<'s, const N: usize, P> = fn(
+type PlanSearch<'s, P> = fn(
     &Machine,
     f64,
     ProgramSteps<'s>,
-    &mut dyn Controller<N>,
+    &mut BoxedController,
     u32,
     &dyn Watch,
 ) -> Result<P, FastestError>;
 
 impl Job {
     /// Plans the cuts.
-    pub(super) fn plan<const N: usize>(&self, watch: &dyn Watch) -> Result<JobPlan, JobError>
-    where
-        Entry: Make<N>,
-    {
+    pub(super) fn plan(&self, axes: usize, watch: &dyn Watch) -> Result<JobPlan, JobError> {
         let aligned = self.aligned()?;
-        let fastest = self.fastest_plan::<N>(watch)?;
-        let within = self.tolerance_plan::<N>(watch)?;
+        let fastest = self.fastest_plan(axes, watch)?;
+        let within = self.tolerance_plan(axes, watch)?;
         let planned = fastest
             .as_ref()
             .map(|plan| &plan.machine)
@@ -88,29 +84,25 @@ impl Job {
     }
 
     /// The plan of least time, found with a controller of its own.
-    fn fastest_plan<const N: usize>(
+    fn fastest_plan(
         &self,
+        axes: usize,
         watch: &dyn Watch,
-    ) -> Result<Option<FastestPlan>, JobError>
-    where
-        Entry: Make<N>,
-    {
+    ) -> Result<Option<FastestPlan>, JobError> {
         let Some(tolerance_um) = self.request.tolerance_um.filter(|_| self.request.fastest) else {
             return Ok(None);
         };
         watch.begin("planning the least time", 1);
-        self.search(tolerance_um, watch, fastest::<N>).map(Some)
+        self.search(axes, tolerance_um, watch, fastest).map(Some)
     }
 
     /// The plan whose path uses what the machine leaves of the tolerance, where the machine is
     /// planned axis by axis.
-    pub(super) fn tolerance_plan<const N: usize>(
+    pub(super) fn tolerance_plan(
         &self,
+        axes: usize,
         watch: &dyn Watch,
-    ) -> Result<Option<TolerancePlan>, JobError>
-    where
-        Entry: Make<N>,
-    {
+    ) -> Result<Option<TolerancePlan>, JobError> {
         let shares = !self.request.fastest
             && self.reference.is_none()
             && Stages::of(&self.machine).planner.needs_axes;
@@ -118,26 +110,24 @@ impl Job {
             return Ok(None);
         };
         watch.begin("looking for the tolerance of the path", 1);
-        self.search(tolerance_um, watch, plan_within::<N>)
+        self.search(axes, tolerance_um, watch, plan_within)
     }
 
     /// Searches for a plan of the program with a controller of its own.
-    fn search<'s, const N: usize, P>(
+    fn search<'s, P>(
         &'s self,
+        axes: usize,
         tolerance_um: f64,
         watch: &dyn Watch,
-        search: PlanSearch<'s, N, P>,
-    ) -> Result<P, JobError>
-    where
-        Entry: Make<N>,
-    {
-        let mut controller = self.own_controller::<N>()?;
+        search: PlanSearch<'s, P>,
+    ) -> Result<P, JobError> {
+        let mut controller = self.own_controller(axes)?;
         let steps: ProgramSteps<'s> = Box::new(|| Ok(path_steps(self.steps()?)));
         let found = search(
             &self.machine,
             tolerance_um,
             steps,
-            &mut *controller,
+            &mut controller,
             self.controller.laps,
             watch,
         );
@@ -151,14 +141,11 @@ impl Job {
     }
 
     /// The requested controller, for a search beside the cut.
-    pub(super) fn own_controller<const N: usize>(&self) -> Result<Box<dyn Controller<N>>, JobError>
-    where
-        Entry: Make<N>,
-    {
+    pub(super) fn own_controller(&self, axes: usize) -> Result<BoxedController, JobError> {
         let mut setup = Setup::new(&self.machine, &self.choices);
         Ok(match &self.model {
-            Some(model) => self.controller.make_with::<N>(setup, model)?,
-            None => Make::<N>::make(self.controller, &mut setup),
+            Some(model) => self.controller.make_with(setup, axes, model)?,
+            None => self.controller.make(&mut setup, axes),
         })
     }
 

@@ -7,8 +7,8 @@ use feedwright_sim::{Machine, Stages, Watch, path_steps};
 use super::planned::JobPlan;
 use super::{Job, JobError};
 use crate::controllers::CutsUncorrected;
-use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::report::{DrawnLimits, FullCircle, LimitBand, Report, ReportedRun, WorstPlace};
+use feedwright_sim::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 
 /// Returns the limits of each axis that the page draws.
 fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 use super::page_units::PageUnits;
 use super::text::escaped;
-use crate::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
+use feedwright_sim::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
 
 /// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; the
 /// names stand to the left.

@@ -57,9 +57,41 @@ pub struct TrainedContour<const N: usize> {
     pub samples: usize,
 }
 
-/// Trains a network on what a machine showed; `rng` shuffles and draws the weights to start from.
-/// `progress` gets the part done, 0 to 1.
-pub fn train_contour<const N: usize>(
+/// Training of networks for two and for three axes: each is compiled here.
+pub trait TrainContour<const N: usize> {
+    /// Trains a network on what a machine showed; `rng` shuffles and draws the weights to start
+    /// from. `progress` gets the part done, 0 to 1.
+    fn train(
+        &self,
+        recording: &Recording<N>,
+        rng: Rng,
+        progress: &mut dyn FnMut(f64),
+    ) -> TrainedContour<N>;
+}
+
+impl TrainContour<2> for Training {
+    fn train(
+        &self,
+        recording: &Recording<2>,
+        rng: Rng,
+        progress: &mut dyn FnMut(f64),
+    ) -> TrainedContour<2> {
+        train_contour(recording, self, rng, progress)
+    }
+}
+
+impl TrainContour<3> for Training {
+    fn train(
+        &self,
+        recording: &Recording<3>,
+        rng: Rng,
+        progress: &mut dyn FnMut(f64),
+    ) -> TrainedContour<3> {
+        train_contour(recording, self, rng, progress)
+    }
+}
+
+fn train_contour<const N: usize>(
     recording: &Recording<N>,
     training: &Training,
     mut rng: Rng,

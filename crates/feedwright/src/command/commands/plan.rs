@@ -23,8 +23,6 @@ use crate::command::progress::Bar;
 use crate::command::streams::{check_request, outputs_of, report_written, tables};
 use crate::compensation::GeometryChoice;
 use crate::controllers::CONTROLLERS;
-use crate::cycle_time::along::BindingStretch;
-use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names};
 use crate::job::JobError;
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
@@ -32,6 +30,10 @@ use crate::request::JobRequest;
 use crate::request::named::find_control;
 use crate::results_format::{stamped, write_json};
 use bound::{Bound, MOST_BOUND_S, bound};
+use feedwright_sim::cycle_time::along::BindingStretch;
+use feedwright_sim::cycle_time::{
+    CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names,
+};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let request = args.request()?;

@@ -1,9 +1,8 @@
 //! Cuts a program at other feedrates, in one of the ways, stretch by stretch.
 
-use feedwright_control::Controller;
 use feedwright_plan::Step;
 use feedwright_plan::vector::norm;
-use feedwright_sim::{Machine, Outcome, Run, RunError, RunResult, Watch};
+use feedwright_sim::{BoxedController, Machine, Outcome, Run, RunError, RunResult, Watch};
 use serde::Serialize;
 
 use super::{CutWay, FeedCut, canon_of, with_factors};
@@ -16,7 +15,7 @@ use crate::correct::stretches::{ProgramPart, assembled, stretches};
 use crate::correct::target::TargetControl;
 
 /// Machine, program and controller of the cuts.
-pub(super) struct FeedBench<'a, const N: usize> {
+pub(super) struct FeedBench<'a> {
     pub(super) machine: &'a Machine,
     /// Machines that an uncertain file may describe: the corrected program must be good on all of
     /// them.
@@ -26,7 +25,7 @@ pub(super) struct FeedBench<'a, const N: usize> {
     pub(super) unit_mm: f64,
     pub(super) laps: u32,
     pub(super) parts: &'a [ProgramPart],
-    pub(super) controller: Box<dyn Controller<N>>,
+    pub(super) controller: BoxedController,
     pub(super) watch: &'a dyn Watch,
 }
 
@@ -86,7 +85,7 @@ impl Watch for Silent<'_> {
     }
 }
 
-impl<const N: usize> FeedBench<'_, N> {
+impl FeedBench<'_> {
     /// Cuts the program with a factor on the feedrates of each stretch.
     pub(super) fn cut(&mut self, way: CutWay, factors: &[f64]) -> Result<FeedErrors, RunError> {
         let parts = with_factors(self.parts, factors, self.machine.limits.max_feed_mm_s);
@@ -94,12 +93,13 @@ impl<const N: usize> FeedBench<'_, N> {
         let silent = Silent(self.watch);
         let stages = self.target.stages(self.machine);
         let nominal = deterministic(self.machine);
+        let axes = self.controller.axes();
         let on = |machine| ExportedCut {
             machine,
             error: None,
             stages,
             original: &original,
-            axes: N,
+            axes,
             watch: &silent,
         };
         let program = match way {
@@ -152,12 +152,12 @@ impl<const N: usize> FeedBench<'_, N> {
         kept: &mut CutRows<'_>,
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
-        let steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
+        let mut steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
         Run::on(machine)
             .within_drives()
             .laps(self.laps)
             .watched(watch)
-            .cut(steps, &mut *self.controller, &mut [kept])
+            .cut_boxed(&mut steps, &mut self.controller, &mut [kept])
     }
 }
 

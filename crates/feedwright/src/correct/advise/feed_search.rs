@@ -81,14 +81,14 @@ impl ErrorFigure {
 }
 
 /// The search of one way.
-pub(super) struct FeedSearch<'b, 'a, const N: usize> {
-    pub(super) bench: &'b mut FeedBench<'a, N>,
+pub(super) struct FeedSearch<'b, 'a> {
+    pub(super) bench: &'b mut FeedBench<'a>,
     pub(super) way: CutWay,
     pub(super) progress: StageSteps<'b>,
     pub(super) done: f64,
 }
 
-impl<const N: usize> FeedSearch<'_, '_, N> {
+impl FeedSearch<'_, '_> {
     fn cut(&mut self, factors: &[f64]) -> Result<FeedErrors, RunError> {
         let errors = self.bench.cut(self.way, factors)?;
         self.done += 1.0 / EXPECTED;

@@ -9,7 +9,7 @@ use feedwright_sim::{Cancelled, Watch, path_steps};
 use miette::Result;
 
 use crate::command::progress::Bar;
-use crate::cycle_time::bound_of_motion;
+use feedwright_sim::cycle_time::bound_of_motion;
 
 /// Longest search for the bound, s.
 pub(super) const MOST_BOUND_S: u64 = 60;

@@ -4,7 +4,7 @@
 //! The plan is sampled as it is generated, every 0.1 ms; memory does not grow with the program.
 //! `cycle_time/along.rs` records the limits that bind along the path.
 
-pub(crate) mod along;
+pub mod along;
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
@@ -16,9 +16,11 @@ use feedwright_plan::{
     AxisLimits, AxisMotion, Constraints, FeedMember, PathLimits, Phase, Piece, Plan, PlanSink,
     Planned, Plc, Steps, WHOLE_PROGRAM, feed_mm_s,
 };
-use feedwright_sim::{AXIS_NAMES, Cancelled, Machine, RunError, StageSteps, Stages, Watch};
 use serde::Serialize;
 
+use crate::machine::{AXIS_NAMES, Machine};
+use crate::pipeline::{RunError, Stages};
+use crate::watch::{Cancelled, StageSteps, Watch};
 use along::{BindingAlong, BindingStretch, LIMITS};
 
 /// Time between two samples, s.
@@ -53,11 +55,11 @@ const MOST_PIECES: usize = 64;
 
 /// Time of one tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct ToolTime {
+pub struct ToolTime {
     /// Its number; 0 before the first tool change.
-    pub(crate) tool: u32,
+    pub tool: u32,
     /// Time of motion and rests with the tool, s.
-    pub(crate) time_s: f64,
+    pub time_s: f64,
 }
 
 /// Time of one line of the program.
@@ -84,11 +86,11 @@ pub struct CycleTimeOptions {
 
 /// A limit with the part of the moving time in which it binds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct BindingShare {
+pub struct BindingShare {
     /// Name of the limit, such as `feedrate`, `x jerk`, `tolerance`.
-    pub(crate) limit: String,
+    pub limit: String,
     /// Part of the moving time, 0 to 1; limits bind together, so parts do not add up to 1.
-    pub(crate) share: f64,
+    pub share: f64,
 }
 
 /// Cycle time of a program, its parts, and the limits that bind.
@@ -115,21 +117,21 @@ pub struct CycleTime {
     /// Largest distance of the planned motion from the programmed path, um.
     pub largest_deviation_um: f64,
     /// Time of each tool, in the order of use.
-    pub(crate) tools: Vec<ToolTime>,
+    pub tools: Vec<ToolTime>,
     /// Part of the cutting time in which the planned speed is below 0.8 of the programmed feedrate.
-    pub(crate) slow_share: f64,
+    pub slow_share: f64,
     /// Limits that bind, the most frequent first; limits that never bind are left out.
-    pub(crate) binding: Vec<BindingShare>,
+    pub binding: Vec<BindingShare>,
     /// Time of each line in order, if requested.
     #[serde(skip)]
     pub lines: Vec<LineTime>,
     /// Limits that bind along the path.
     #[serde(skip)]
-    pub(crate) along: BindingAlong,
+    pub along: BindingAlong,
 }
 
 /// Returns the names of limits, in the order in which they are counted everywhere.
-pub(crate) fn limit_names() -> Vec<String> {
+pub fn limit_names() -> Vec<String> {
     let of_axis =
         |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
     let axes = AXIS_NAMES.iter().flat_map(|name| of_axis(name));
@@ -226,7 +228,7 @@ pub fn cycle_time_by<'p>(
 ///
 /// # Errors
 /// The same as [`cycle_time`].
-pub(crate) fn bound_of_motion<'p>(
+pub fn bound_of_motion<'p>(
     constraints: &Constraints,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     mut moves: impl FnMut(&Phase) -> Result<(), Cancelled>,
@@ -242,16 +244,16 @@ pub(crate) fn bound_of_motion<'p>(
 /// Cycle time of the plan of a cut. It receives that plan as a [`PlanSink`], so the program is not
 /// planned again.
 #[derive(Debug)]
-pub(crate) struct CycleTimeOfCut<'a>(Mutex<Sampler<'a>>);
+pub struct CycleTimeOfCut<'a>(Mutex<Sampler<'a>>);
 
 impl<'a> CycleTimeOfCut<'a> {
     /// Creates the sink for a plan within constraints, by a planner.
-    pub(crate) fn new(constraints: &'a Constraints, planner: &'static FeedMember) -> Self {
+    pub fn new(constraints: &'a Constraints, planner: &'static FeedMember) -> Self {
         Self(Mutex::new(Sampler::new(constraints, planner)))
     }
 
     /// Returns the cycle time of the plan, complete if the plan was handed out to its end.
-    pub(crate) fn finish(self) -> CycleTime {
+    pub fn finish(self) -> CycleTime {
         self.0
             .into_inner()
             .unwrap_or_else(PoisonError::into_inner)

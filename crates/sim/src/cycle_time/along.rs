@@ -14,27 +14,27 @@ const FIRST_S: f64 = 1e-3;
 
 /// Number of limits: feedrate, tolerance, velocity, acceleration and jerk of three axes, and
 /// acceleration along the path, across it, and corners.
-pub(crate) const LIMITS: usize = 14;
+pub const LIMITS: usize = 14;
 
 /// A stretch of the motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub(crate) struct BindingStretch {
+pub struct BindingStretch {
     /// Duration of the stretch, s; rests are left out.
-    pub(crate) duration_s: f64,
+    pub duration_s: f64,
     /// Arc length of the programmed path at its end, mm.
-    pub(crate) to_mm: f64,
+    pub to_mm: f64,
     /// Way of the tool in the stretch, mm.
-    pub(crate) way_mm: f64,
+    pub way_mm: f64,
     /// Lines of the program at its start and its end.
-    pub(crate) lines: [u32; 2],
+    pub lines: [u32; 2],
     /// Time in which each limit binds, s, in the order of [`super::limit_names`].
-    pub(crate) bound_s: [f64; LIMITS],
+    pub bound_s: [f64; LIMITS],
 }
 
 impl BindingStretch {
     /// Merges this stretch with the next one.
     #[must_use]
-    pub(crate) fn merged(&self, next: &Self) -> Self {
+    pub fn merged(&self, next: &Self) -> Self {
         Self {
             duration_s: self.duration_s + next.duration_s,
             to_mm: next.to_mm,
@@ -45,7 +45,7 @@ impl BindingStretch {
     }
 
     /// Returns the limit that binds for the longest time, if any binds.
-    pub(crate) fn longest(&self) -> Option<usize> {
+    pub fn longest(&self) -> Option<usize> {
         let longest = (0..LIMITS).max_by(|&a, &b| self.bound_s[a].total_cmp(&self.bound_s[b]));
         longest.filter(|&limit| self.bound_s[limit] > 0.0)
     }
@@ -53,7 +53,7 @@ impl BindingStretch {
 
 /// The stretches of a motion in order.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct BindingAlong {
+pub struct BindingAlong {
     stretches: Vec<BindingStretch>,
     stretch_s: f64,
 }
@@ -69,12 +69,12 @@ impl Default for BindingAlong {
 
 impl BindingAlong {
     /// Returns the stretches in the order of time.
-    pub(crate) fn stretches(&self) -> &[BindingStretch] {
+    pub fn stretches(&self) -> &[BindingStretch] {
         &self.stretches
     }
 
     /// Returns the stretches, merged into at most `parts` of about equal time.
-    pub(crate) fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
+    pub fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
         let each = self.stretches.len().div_ceil(parts.max(1)).max(1);
         let merged = |chunk: &[BindingStretch]| {
             chunk
@@ -86,7 +86,7 @@ impl BindingAlong {
     }
 
     /// Adds a sample after the earlier ones.
-    pub(crate) fn push(&mut self, sample: &BindingStretch) {
+    pub fn push(&mut self, sample: &BindingStretch) {
         match self.stretches.last_mut() {
             Some(last) if last.duration_s + 0.5 * sample.duration_s < self.stretch_s => {
                 *last = last.merged(sample);

@@ -17,8 +17,8 @@
 //!
 //! Source: Bolton (1975), Biarc curves; equal tangent lengths as in Sutcliffe (2005).
 
+use crate::vector::{Vector, add_scaled, distance, dot, sub};
 use feedwright_gcode::canon::{Plane, Shape};
-use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
 
 /// Tangents that differ by less meet without a corner, rad: half of what feed planners take for
 /// one.
@@ -53,10 +53,14 @@ pub struct FitPoint {
 /// A motion of the fit, along the same axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitMotion {
+    /// Start, mm.
     pub start_mm: Vector,
+    /// End, mm.
     pub end_mm: Vector,
+    /// Line or arc.
     pub shape: Shape,
-    pub(crate) feed_mm_s: f64,
+    /// Feedrate, mm/s.
+    pub feed_mm_s: f64,
 }
 
 /// An arc or a line of the plane, with its rise.
@@ -272,7 +276,8 @@ impl<'a> ArcFit<'a> {
 
 impl FitMotion {
     /// The same along X, Y and Z, of a fit to points along the axes of a plane.
-    pub(super) fn in_plane(self, plane: Plane) -> Self {
+    #[must_use]
+    pub fn in_plane(self, plane: Plane) -> Self {
         let along = |of_plane: Vector| {
             let mut place = [0.0; 3];
             plane
