@@ -276,20 +276,24 @@ impl Entry {
 
     /// The controller of this row for two axes.
     pub fn in_plane(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
-        if setup.is_unsuited(self) {
-            return Box::new(Uncorrected);
-        }
-        let choices = setup.choices;
-        (self.plane)(setup, &|parameter| choices.value(self, parameter))
+        self.made(setup, self.plane)
     }
 
     /// The controller of this row for three axes.
     pub fn in_space(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
+        self.made(setup, self.space)
+    }
+
+    fn made<const N: usize>(
+        &self,
+        setup: &mut Setup<'_>,
+        maker: Maker<N>,
+    ) -> Box<dyn Controller<N>> {
         if setup.is_unsuited(self) {
             return Box::new(Uncorrected);
         }
         let choices = setup.choices;
-        (self.space)(setup, &|parameter| choices.value(self, parameter))
+        maker(setup, &|parameter| choices.value(self, parameter))
     }
 }
 

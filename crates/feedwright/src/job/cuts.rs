@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use feedwright_control::IdentifiedAxes;
+use feedwright_control::{Controller, IdentifiedAxes};
 use feedwright_gcode::Summary;
 use feedwright_ident::{Model, Origin};
 use feedwright_plan::{AlignedPaths, PlanSink, SpeedCaps};
@@ -119,8 +119,7 @@ impl Job {
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<Cuts, JobError> {
-        let CheckedJob { axes, summary, .. } = checked;
-        let axes = *axes;
+        let (axes, summary) = (checked.axes, &checked.summary);
         let mut cuts = Cuts::default();
         for entry in self.controllers() {
             watch.check()?;
@@ -191,23 +190,23 @@ impl Job {
             source,
             date: self.today.clone(),
         };
-        let periods = self.machine.period.periods();
         match controller {
-            BoxedController::Plane(controller) => model.with_axes(
-                IdentifiedAxes {
-                    periods,
-                    axes: controller.known()?.map(|axis| axis.parameters),
-                },
-                origin,
-            ),
-            BoxedController::Space(controller) => model.with_axes(
-                IdentifiedAxes {
-                    periods,
-                    axes: controller.known()?.map(|axis| axis.parameters),
-                },
-                origin,
-            ),
+            BoxedController::Plane(controller) => self.known_by(&**controller, model, origin),
+            BoxedController::Space(controller) => self.known_by(&**controller, model, origin),
         }
+    }
+
+    fn known_by<const N: usize>(
+        &self,
+        controller: &dyn Controller<N>,
+        model: &Model,
+        origin: Origin,
+    ) -> Option<Model> {
+        let axes = IdentifiedAxes {
+            periods: self.machine.period.periods(),
+            axes: controller.known()?.map(|axis| axis.parameters),
+        };
+        model.with_axes(axes, origin)
     }
 
     fn cut_once(
