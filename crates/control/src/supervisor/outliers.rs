@@ -73,8 +73,26 @@ impl Outliers {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::axis::{Parameters, Periods};
 
     const SERVO_S: f64 = 0.001;
+
+    #[test]
+    fn the_bound_is_four_deviations_and_the_travel_of_a_period_under_the_largest_torque() {
+        let parameters = Parameters {
+            torque_limit_nm: 30.0,
+            inertia_kg_m2: 0.01,
+            ..Parameters::NOTHING
+        };
+        let periods = Periods {
+            servo_s: SERVO_S,
+            mechanics_s: SERVO_S,
+            mechanics_per_servo: 1,
+        };
+        // A deviation of 2 mrad; 3000 rad/s2 from rest for 1 ms is 1.5 mrad.
+        let bound_rad = bound_rad(&AxisModel::new(parameters, periods), 4e-6);
+        assert!((bound_rad - 9.5e-3).abs() < 1e-15, "{bound_rad}");
+    }
 
     #[test]
     fn a_small_innovation_is_used_and_a_large_one_only_where_it_lasts() {
