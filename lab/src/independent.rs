@@ -370,8 +370,7 @@ fn cut_once(
         .laps(entry.laps)
         .sharing(plan)
         .watched(watch);
-    let mut steps = || Ok(Box::new(program.steps.iter().cloned().map(Ok)) as _);
-    match run.cut_boxed(&mut steps, &mut controller, &mut [&mut statistics]) {
+    match run.cut_boxed_steps(&program.steps, &mut controller, &mut [&mut statistics]) {
         Ok(done) => {
             let encoders_um = done.joint_error.map_or([0.0; 2], |error| {
                 [error.rms_mm, error.max_mm].map(|mm| 1e3 * mm)

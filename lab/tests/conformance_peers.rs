@@ -124,11 +124,7 @@ fn cut_contour(
     let mut statistics = Statistics::new();
     let run = Run::on(machine)
         .laps(entry.laps)
-        .cut_boxed(
-            &mut || Ok(Box::new(workpiece.steps.iter().cloned().map(Ok))),
-            &mut controller,
-            &mut [&mut statistics],
-        )
+        .cut_boxed_steps(&workpiece.steps, &mut controller, &mut [&mut statistics])
         .unwrap();
     assert!(run.faded_out.is_none(), "{}: {run:?}", entry.name);
     [statistics.rms_um(), run.time_s]

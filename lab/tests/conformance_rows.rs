@@ -15,8 +15,8 @@ const ALONG_MM: f64 = 1e-7;
 fn rows(axes: usize, machine: &Machine, steps: &[Step]) -> Vec<Row> {
     let mut rows = Vec::<Row>::new();
     Run::on(machine)
-        .cut_boxed(
-            &mut || Ok(Box::new(steps.iter().cloned().map(Ok))),
+        .cut_boxed_steps(
+            steps,
             &mut BoxedController::uncorrected(axes),
             &mut [&mut rows],
         )

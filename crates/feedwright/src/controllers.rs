@@ -17,8 +17,7 @@ mod recorded;
 use std::ops::Deref;
 
 use feedwright_control::{
-    Controller, ControllerRow, Feedforward, LqgIdentified, MagnitudeOnly, Member, MemberName,
-    Parameter, TwoDimensional, Uncorrected, Values,
+    AnyController, Controller, ControllerRow, MemberName, Parameter, Uncorrected, Values,
 };
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
@@ -105,30 +104,30 @@ macro_rules! controller {
 
 /// A row of the family of `feedwright-control`.
 macro_rules! member {
-    ($Name:ident, $row:expr, $summary:literal, $source:literal) => {
+    ($Name:ident, $summary:literal, $source:literal) => {{
+        const ROW: ControllerRow = AnyController::<2>::ROWS[MemberName::$Name as usize].1;
         Entry {
-            row: $row,
+            row: ROW,
             summary: $summary,
             source: $source,
             laps: 1,
             plane: |setup, values| {
-                setup.member(&$row, values, |data| {
+                setup.member(&ROW, values, |data| {
                     BoxedController::in_plane(MemberName::$Name, data, values)
                 })
             },
             space: |setup, values| {
-                setup.member(&$row, values, |data| {
+                setup.member(&ROW, values, |data| {
                     BoxedController::in_space(MemberName::$Name, data, values)
                 })
             },
         }
-    };
+    }};
 }
 
 /// The programmed path at the planned feed.
 pub static UNCORRECTED: Entry = member!(
     Uncorrected,
-    <Uncorrected as Member<2>>::ROW,
     "the programmed path at the planned feed",
     "what every open-source control does"
 );
@@ -136,7 +135,6 @@ pub static UNCORRECTED: Entry = member!(
 /// Velocity, acceleration and friction feedforward with the exact model of the machine.
 pub static FEEDFORWARD: Entry = member!(
     Feedforward,
-    Feedforward::<2>::ROW,
     "velocity, acceleration and friction feedforward with the exact model of the machine; makes slow corners of router worse",
     "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)"
 );
@@ -144,7 +142,6 @@ pub static FEEDFORWARD: Entry = member!(
 /// Inversion of the identifier, speed along the path only.
 pub static MAGNITUDE_ONLY: Entry = member!(
     MagnitudeOnly,
-    MagnitudeOnly::<2>::ROW,
     "inversion of the identifier, speed along the path only",
     "Yoon and Jeon (2000)"
 );
@@ -152,7 +149,6 @@ pub static MAGNITUDE_ONLY: Entry = member!(
 /// Inversion of the identifier, speed and geometry.
 pub static TWO_DIMENSIONAL: Entry = member!(
     TwoDimensional,
-    TwoDimensional::<2>::ROW,
     "inversion of the identifier, speed and geometry",
     "Lee, Cho and Jeon (2005)"
 );
@@ -161,7 +157,6 @@ pub static TWO_DIMENSIONAL: Entry = member!(
 /// axis.
 pub static LQG_IDENTIFIED: Entry = member!(
     LqgIdentified,
-    LqgIdentified::<2>::ROW,
     "Kalman filter and linear-quadratic regulator with preview, by an identified model of each axis",
     "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)"
 );

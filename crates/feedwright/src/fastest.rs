@@ -32,11 +32,11 @@ use std::sync::Arc;
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Corner;
 use feedwright_plan::{Constraints, SpeedCaps, Step, Steps};
+use feedwright_sim::cycle_time::{CycleTime, cycle_time_within};
 use feedwright_sim::{BoxedController, Machine, Outcome, Run, RunError, Watch};
 use thiserror::Error;
 
 use cut_places::CutPlaces;
-use feedwright_sim::cycle_time::{CycleTime, cycle_time_within};
 use path_grid::PathGrid;
 pub(crate) use path_share::{TolerancePlan, plan_within};
 use remaining_error::RemainingError;

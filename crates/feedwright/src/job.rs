@@ -45,6 +45,7 @@ use std::sync::Arc;
 
 use feedwright_gcode::{self, Program};
 use feedwright_ident::{LogFinding, Model};
+use feedwright_sim::cycle_time::CycleTimeOfCut;
 use feedwright_sim::{Machine, Sink, Watch};
 
 use crate::compensation::GeometryChoice;
@@ -56,7 +57,6 @@ use crate::measured::MeasuredLog;
 use crate::report::Report;
 use crate::report::harm::Harm;
 use crate::request::JobRequest;
-use feedwright_sim::cycle_time::CycleTimeOfCut;
 pub use guests::Guests;
 pub use read::CheckedJob;
 

@@ -18,10 +18,9 @@ pub fn smoothed(points: &[Vector], sigma: f64) -> Vec<Vector> {
     if reach < 1 || points.is_empty() {
         return points.to_vec();
     }
-    let weights: Vec<f64> = (-reach..=reach)
-        .map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2)))
-        .collect();
-    let sum: f64 = weights.iter().sum();
+    let weight = |k: isize| libm::exp(-0.5 * (k as f64 / sigma).powi(2));
+    let sum: f64 = (-reach..=reach).map(weight).sum();
+    let weights: Vec<f64> = (-reach..=reach).map(|k| weight(k) / sum).collect();
     let last = points.len() as isize - 1;
     (0..=last)
         .map(|n| {
@@ -29,7 +28,7 @@ pub fn smoothed(points: &[Vector], sigma: f64) -> Vec<Vector> {
             for (k, weight) in (-reach..=reach).zip(&weights) {
                 let point = points[(n + k).clamp(0, last) as usize];
                 for i in 0..3 {
-                    mean[i] += weight / sum * point[i];
+                    mean[i] += weight * point[i];
                 }
             }
             mean

@@ -1,7 +1,8 @@
 //! A controller of two or of three axes.
 //!
-//! What depends on the number of axes is compiled here, once and fast: the family of controllers,
-//! the tick and the closed loop. A crate that cuts through [`BoxedController`] compiles neither.
+//! Controllers, tick and closed loop depend on the number of axes. This crate compiles them, with
+//! optimization, for two and for three. A crate that cuts with a [`BoxedController`] compiles none
+//! of them again.
 
 use feedwright_control::{
     AnyController, Controller, ControllerData, MemberName, Uncorrected, Values,

@@ -303,10 +303,26 @@ impl<'a> Run<'a> {
         self.laps_of(|| steps().map(LapPaths::One), controller, sinks)
     }
 
+    /// Cuts as [`Run::cut_steps`] does, with a controller of two or three axes.
+    ///
+    /// # Errors
+    /// Fails as [`Run::cut_steps`] does.
+    pub fn cut_boxed_steps(
+        &self,
+        steps: &[Step],
+        controller: &mut BoxedController,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        match controller {
+            BoxedController::Plane(controller) => self.cut_steps(steps, &mut **controller, sinks),
+            BoxedController::Space(controller) => self.cut_steps(steps, &mut **controller, sinks),
+        }
+    }
+
     /// Cuts as [`Run::cut`] does, with a controller of two or three axes.
     ///
     /// # Errors
-    /// As there.
+    /// Fails as [`Run::cut`] does.
     pub fn cut_boxed<'p>(
         &self,
         steps: &mut dyn FnMut() -> Result<Steps<'p>, ReadError>,
@@ -322,7 +338,7 @@ impl<'a> Run<'a> {
     /// Cuts as [`Run::cut_aligned`] does, with a controller of two or three axes.
     ///
     /// # Errors
-    /// As there.
+    /// Fails as [`Run::cut`] does.
     pub fn cut_boxed_aligned(
         &self,
         aligned: &AlignedPaths,

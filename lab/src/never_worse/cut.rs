@@ -248,8 +248,7 @@ fn once(
         };
         let sinks: &mut [&mut dyn Sink] = &mut [&mut statistics, &mut later];
         let run = run.laps(entry.laps);
-        let mut steps = || Ok(Box::new(program.steps.iter().cloned().map(Ok)) as _);
-        match run.cut_boxed(&mut steps, controller, sinks) {
+        match run.cut_boxed_steps(&program.steps, controller, sinks) {
             Ok(run) => Ok(Figures {
                 later_rms_um: later.rms_um(),
                 ..Figures::of(&run, &statistics, entry)

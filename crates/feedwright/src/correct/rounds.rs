@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
-use feedwright_plan::{PathError, Pieces, Step};
+use feedwright_plan::{FitMotion, PathError, Pieces, Step};
 use feedwright_sim::{Machine, RunError, StageSteps};
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,6 @@ use super::stretches::{
 };
 use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
-use feedwright_plan::FitMotion;
 
 /// Largest number of cuts.
 const ROUNDS: u32 = 12;

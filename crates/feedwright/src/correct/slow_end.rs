@@ -7,12 +7,12 @@
 //! to round.
 
 use feedwright_gcode::canon::{Motion, MotionKind, Shape};
+use feedwright_plan::FitPoint;
 use feedwright_plan::vector::{add_scaled, distance, norm, sub};
 use feedwright_sim::Machine;
 
 use super::stretches::SmoothStretch;
 use super::target::PrintedTarget;
-use feedwright_plan::FitPoint;
 
 /// A straight motion is slowed down before its end if it is longer than the slow piece by this
 /// factor.

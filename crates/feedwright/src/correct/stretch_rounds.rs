@@ -2,12 +2,13 @@
 
 use std::iter;
 
+use feedwright_plan::{ArcFit, FitMotion, FitPoint};
+
 use super::budget::{StretchBudget, StretchCost};
 use super::slow_end::SlowEnd;
 use super::stretch_cut::StretchCut;
 use super::stretches::{StretchCommand, rest_s};
 use super::unchanged::UnchangedReason;
-use feedwright_plan::{ArcFit, FitMotion, FitPoint};
 
 /// Cuts without a gain after which a stretch is finished.
 const NO_GAIN: u32 = 3;

@@ -2,13 +2,13 @@
 
 use feedwright_gcode::Summary;
 use feedwright_ident::Model;
+use feedwright_sim::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use feedwright_sim::{Machine, Stages, Watch, path_steps};
 
 use super::planned::JobPlan;
 use super::{Job, JobError};
 use crate::controllers::CutsUncorrected;
 use crate::report::{DrawnLimits, FullCircle, LimitBand, Report, ReportedRun, WorstPlace};
-use feedwright_sim::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 
 /// Returns the limits of each axis that the page draws.
 fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {

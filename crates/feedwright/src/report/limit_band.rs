@@ -7,9 +7,10 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use feedwright_sim::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
+
 use super::page_units::PageUnits;
 use super::text::escaped;
-use feedwright_sim::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
 
 /// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; the
 /// names stand to the left.

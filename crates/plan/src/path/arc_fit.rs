@@ -17,8 +17,9 @@
 //!
 //! Source: Bolton (1975), Biarc curves; equal tangent lengths as in Sutcliffe (2005).
 
-use crate::vector::{Vector, add_scaled, distance, dot, sub};
 use feedwright_gcode::canon::{Plane, Shape};
+
+use crate::vector::{Vector, add_scaled, distance, dot, sub};
 
 /// Tangents that differ by less meet without a corner, rad: half of what feed planners take for
 /// one.

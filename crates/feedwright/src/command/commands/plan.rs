@@ -10,6 +10,10 @@ use std::time::Instant;
 use feedwright_gcode::suggestion::nearest;
 use feedwright_gcode::{Program, visible};
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
+use feedwright_sim::cycle_time::along::BindingStretch;
+use feedwright_sim::cycle_time::{
+    CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names,
+};
 use feedwright_sim::{Machine, Stages, path_steps, shown};
 use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
@@ -30,10 +34,6 @@ use crate::request::JobRequest;
 use crate::request::named::find_control;
 use crate::results_format::{stamped, write_json};
 use bound::{Bound, MOST_BOUND_S, bound};
-use feedwright_sim::cycle_time::along::BindingStretch;
-use feedwright_sim::cycle_time::{
-    CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names,
-};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let request = args.request()?;

@@ -152,12 +152,11 @@ impl FeedBench<'_> {
         kept: &mut CutRows<'_>,
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
-        let mut steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
         Run::on(machine)
             .within_drives()
             .laps(self.laps)
             .watched(watch)
-            .cut_boxed(&mut steps, &mut self.controller, &mut [kept])
+            .cut_boxed_steps(program, &mut self.controller, &mut [kept])
     }
 }
 

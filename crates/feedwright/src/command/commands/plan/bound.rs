@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use feedwright_gcode::{Program, Settings};
 use feedwright_plan::Constraints;
+use feedwright_sim::cycle_time::bound_of_motion;
 use feedwright_sim::{Cancelled, Watch, path_steps};
 use miette::Result;
 
 use crate::command::progress::Bar;
-use feedwright_sim::cycle_time::bound_of_motion;
 
 /// Longest search for the bound, s.
 pub(super) const MOST_BOUND_S: u64 = 60;
